@@ -1,0 +1,21 @@
+//! The inner loops. Nothing else in the crate is hot.
+//!
+//! Every loop keeps one order of summation and writes `a * b + c` plainly (two roundings), so that host and target agree
+//! bit for bit.
+
+mod activation;
+mod modal;
+mod tiled;
+
+pub use activation::{quadrant_angle, sin_cos, tanh};
+pub use modal::{Block, JointBlock, advance, advance_joint, is_stable, settle};
+pub use tiled::{ROWS, Tiled};
+
+/// `sum(a[i] * b[i])` in index order over the shorter length. Cost: one multiply-add per element.
+pub fn dot(a: &[f32], b: &[f32]) -> f32 {
+    let mut sum = 0.0;
+    for (a, b) in a.iter().zip(b) {
+        sum += a * b;
+    }
+    sum
+}

@@ -1,0 +1,85 @@
+//! Matrix x vector with the weights stored in the order in which they are read.
+
+use core::num::NonZeroUsize;
+
+use crate::model::{LoadError, Pack};
+
+/// Rows of one tile.
+pub const ROWS: usize = 8;
+
+/// A matrix stored as tiles of [`ROWS`] rows, columns in order: `tile[t][column][row in tile]`.
+///
+/// One tile column is 32 bytes: a single block load feeds eight accumulators. Rows past the last one are zero.
+#[derive(Clone, Copy, Debug)]
+pub struct Tiled<'a> {
+    columns: NonZeroUsize,
+    tiles: &'a [[f32; ROWS]],
+}
+
+impl<'a> Tiled<'a> {
+    /// A view of `ceil(rows / 8) * columns` tile columns; `None` unless the shape fits.
+    pub fn new(rows: usize, columns: usize, tiles: &'a [[f32; ROWS]]) -> Option<Self> {
+        let columns = NonZeroUsize::new(columns)?;
+        let expected = rows.div_ceil(ROWS).checked_mul(columns.get())?;
+        (expected == tiles.len()).then_some(Self { columns, tiles })
+    }
+
+    /// The matrix `name` of a pack, `rows x columns`.
+    pub fn load(pack: &Pack<'a>, name: &'static str, rows: usize, columns: usize) -> Result<Self, LoadError> {
+        let expected = rows.div_ceil(ROWS).saturating_mul(columns);
+        let tiles = pack.slice(name, expected)?;
+        Self::new(rows, columns, tiles).ok_or(LoadError::Shape { tensor: name, found: tiles.len(), expected })
+    }
+
+    /// Number of columns.
+    pub fn columns(&self) -> usize {
+        self.columns.get()
+    }
+
+    /// `y += W x`. Cost: `rows` (rounded up to 8) x `columns` multiply-adds.
+    pub fn multiply_add(&self, x: &[f32], y: &mut [f32]) {
+        for (tile, y) in self.tiles.chunks_exact(self.columns.get()).zip(y.chunks_mut(ROWS)) {
+            let mut sum = [0.0f32; ROWS];
+            for (weights, x) in tile.iter().zip(x) {
+                for (sum, weight) in sum.iter_mut().zip(weights) {
+                    *sum += weight * x;
+                }
+            }
+            for (y, sum) in y.iter_mut().zip(sum) {
+                *y += sum;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn multiplies_like_the_definition() {
+        // 9 x 2: one full tile and one row of the next.
+        let entry = |row: usize, column: usize| (row * 2 + column) as f32 - 5.0;
+        let mut tiles = [[0.0; ROWS]; 4];
+        for row in 0..9 {
+            for column in 0..2 {
+                tiles[row / ROWS * 2 + column][row % ROWS] = entry(row, column);
+            }
+        }
+        let matrix = Tiled::new(9, 2, &tiles).unwrap();
+        let mut y = [1.0; 9];
+        matrix.multiply_add(&[2.0, -3.0], &mut y);
+        for (row, y) in y.iter().enumerate() {
+            assert_eq!(*y, 1.0 + 2.0 * entry(row, 0) - 3.0 * entry(row, 1));
+        }
+    }
+
+    #[test]
+    fn refuses_a_shape_that_does_not_fit() {
+        let tiles = [[0.0; ROWS]; 4];
+        assert!(Tiled::new(9, 2, &tiles).is_some());
+        assert!(Tiled::new(17, 2, &tiles).is_none());
+        assert!(Tiled::new(9, 0, &[]).is_none());
+        assert!(Tiled::new(usize::MAX, usize::MAX, &tiles).is_none());
+    }
+}

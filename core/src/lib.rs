@@ -1,0 +1,57 @@
+//! Learned motion style on a microcontroller: `no_std`, no heap, no panic, one infallible [`step`] per frame.
+//!
+//! The host crate learns *how* a motion is performed and writes a pack (`.kin`); this crate holds the pack in flash and
+//! performs it, frame by frame. A frame walks through the rooms in this order:
+//!
+//! | room | holds | source |
+//! |---|---|---|
+//! | [`model`] | the pack: header check, typed views into borrowed bytes, errors | `docs/pack.md` |
+//! | [`pose`] | skeleton, pose, forward kinematics, heading, joint positions -> rotations | |
+//! | [`translate`] | style translation by linear time-invariant state-space models | Dong 2018 after Hsu 2005 |
+//! | [`mechanics`] | what the body must do, what is expression: decouple, modulate, mix, blend | Boehs 2017 |
+//! | [`components`] | style components applied to a live pose or to a stored stream of weights | Phong 2018 |
+//! | [`kernel`] | the few inner loops: matrix x vector, modal recursion, activations | |
+//!
+//! Units are metres, radians, seconds and frames; right-handed, Y up; a person who faces +Z has the left hand at +X.
+//!
+//! Configuration and state are two types: a model is an immutable view of flash ([`Translator`]), a state is owned by the
+//! caller ([`TranslatorState`]), can be copied and reset. Sizes are const-generic capacities; the file gives the actual
+//! shape, and a mismatch is an error at load time. After a successful load nothing can fail.
+//!
+//! ```
+//! use kinesic::{Pack, Pose, Translator, TranslatorState};
+//!
+//! # fn frame() -> Pose<32> { Pose::identity() }
+//! # fn show(_: &Pose<32>) {}
+//! fn run(bytes: &'static [u8]) -> Result<(), kinesic::LoadError> {
+//!     let pack = Pack::load(bytes)?;
+//!     let translator = Translator::<32, 1280>::load(&pack)?;
+//!     let mut state = TranslatorState::new();
+//!     let mut styled = Pose::identity();
+//!     for _ in 0..100 {
+//!         translator.step(&mut state, &frame(), &mut styled);
+//!         show(&styled);
+//!     }
+//!     Ok(())
+//! }
+//! # assert!(run(&[]).is_err());
+//! ```
+//!
+//! [`step`]: Translator::step
+#![no_std]
+
+#[cfg(not(target_endian = "little"))]
+compile_error!("packs are little-endian and used in place: kinesic needs a little-endian target");
+
+pub mod components;
+pub mod kernel;
+pub mod mechanics;
+pub mod model;
+pub mod pose;
+pub mod translate;
+
+pub use components::{Components, ComponentsState};
+pub use mechanics::{BodyMechanics, MechanicsState};
+pub use model::{LoadError, Pack};
+pub use pose::{Pose, Skeleton};
+pub use translate::{Translator, TranslatorState};

@@ -1,0 +1,249 @@
+//! What a pack says about itself: the postcard-encoded metadata.
+
+use core::marker::PhantomData;
+
+use serde::{Deserialize, Serialize};
+
+/// What a pack holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[repr(u16)]
+pub enum Kind {
+    /// Several models for one skeleton.
+    Style = 0,
+    /// One style translator.
+    Translator = 1,
+    /// One body-mechanics model.
+    Mechanics = 2,
+    /// Style components.
+    Components = 3,
+}
+
+impl Kind {
+    /// Number in the header.
+    pub fn code(self) -> u16 {
+        self as u16
+    }
+
+    /// The kind with this number in the header.
+    pub fn from_code(code: u16) -> Option<Self> {
+        match code {
+            0 => Some(Self::Style),
+            1 => Some(Self::Translator),
+            2 => Some(Self::Mechanics),
+            3 => Some(Self::Components),
+            _ => None,
+        }
+    }
+}
+
+/// Everything in a pack but the tensors' numbers.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub struct Metadata<'a> {
+    /// Name of the pack.
+    pub name: &'a str,
+    /// Frames per second that the models were trained at and must be stepped at.
+    pub frame_rate: f32,
+    /// The skeleton's joints, parents first. Rest offsets are the tensor `skeleton/offsets`.
+    #[serde(borrow)]
+    pub joints: List<'a, JointMeta<'a>>,
+    /// The models.
+    #[serde(borrow)]
+    pub models: List<'a, ModelMeta<'a>>,
+    /// The tensors.
+    #[serde(borrow)]
+    pub tensors: List<'a, TensorMeta<'a>>,
+    /// Where the pack comes from, for the host (postcard; the device never reads it).
+    pub provenance: &'a [u8],
+}
+
+/// One joint of the skeleton.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct JointMeta<'a> {
+    /// Name as in the training clips.
+    pub name: &'a str,
+    /// Index of the parent; `None` for the root, joint 0.
+    pub parent: Option<u16>,
+}
+
+/// One model.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum ModelMeta<'a> {
+    /// A style translator; its tensors are `translate/...`.
+    Translator(#[serde(borrow)] TranslatorMeta<'a>),
+    /// Body mechanics; its tensors are `mechanics/...`.
+    Mechanics(MechanicsMeta),
+    /// Style components; their tensors are `components/...`.
+    Components(#[serde(borrow)] ComponentsMeta<'a>),
+}
+
+impl<'a> ModelMeta<'a> {
+    /// The translator's shape, if it is one.
+    pub fn translator(self) -> Option<TranslatorMeta<'a>> {
+        if let Self::Translator(meta) = self { Some(meta) } else { None }
+    }
+
+    /// The body mechanics' shape, if it is one.
+    pub fn mechanics(self) -> Option<MechanicsMeta> {
+        if let Self::Mechanics(meta) = self { Some(meta) } else { None }
+    }
+
+    /// The components' shape, if it is such a model.
+    pub fn components(self) -> Option<ComponentsMeta<'a>> {
+        if let Self::Components(meta) = self { Some(meta) } else { None }
+    }
+}
+
+/// How a translator's states are shared among the joints.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Form {
+    /// A model of its own for every joint, 3 inputs and 3 outputs (Dong 2018).
+    PerJoint,
+    /// One model for all joints, driven by a few principal coordinates (Hsu 2005).
+    WholeBody,
+}
+
+/// A translator's shape.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TranslatorMeta<'a> {
+    /// Name of the style.
+    pub style: &'a str,
+    /// Per joint or whole body.
+    pub form: Form,
+    /// 2 x 2 blocks of the transition matrix, all joints together.
+    pub blocks: u32,
+    /// Inputs of the shared model: principal coordinates of the pose (0 in the per-joint form).
+    pub drives: u32,
+    /// Range of strengths in which the poses of the training clips stayed plausible.
+    pub strength: [f32; 2],
+}
+
+/// The shape of a body-mechanics model, and the sizes of the body that its features are measured by.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MechanicsMeta {
+    /// Units of the layer between the features and the code.
+    pub hidden: u32,
+    /// Units of the code, the autoencoder's hidden layer.
+    pub code: u32,
+    /// Height of the body standing straight, m.
+    pub body_height: f32,
+    /// Height of the hips standing straight, m.
+    pub hip_height: f32,
+    /// Gain `g` of the activity index.
+    pub gain: f32,
+    /// Exponent `b` of the activity index, 1..16.
+    pub exponent: u8,
+}
+
+/// Shape of a model of style components.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ComponentsMeta<'a> {
+    /// Name of the style.
+    pub style: &'a str,
+    /// Number of components, K.
+    pub count: u32,
+    /// Frames of the stored stream of weights; 0 if the pack holds none.
+    pub frames: u32,
+    /// Range of strengths in which the poses of the content clip stayed plausible.
+    pub strength: [f32; 2],
+}
+
+/// Number type of a tensor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum TensorType {
+    /// IEEE 754 single precision.
+    F32,
+    /// Unsigned 16 bit.
+    U16,
+}
+
+impl TensorType {
+    /// Bytes of one element.
+    pub fn size(self) -> usize {
+        match self {
+            Self::F32 => 4,
+            Self::U16 => 2,
+        }
+    }
+}
+
+/// Where a tensor lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TensorMeta<'a> {
+    /// Name, `engine/tensor`.
+    pub name: &'a str,
+    /// Number type.
+    pub kind: TensorType,
+    /// Rows and columns; a vector has one column.
+    pub shape: [u32; 2],
+    /// First byte in the payload, a multiple of 16.
+    pub offset: u32,
+}
+
+impl TensorMeta<'_> {
+    /// Number of elements, if it fits.
+    pub fn len(&self) -> Option<usize> {
+        let [rows, columns] = self.shape;
+        (rows as usize).checked_mul(columns as usize)
+    }
+
+    /// True if the tensor has no elements.
+    pub fn is_empty(&self) -> bool {
+        self.len() == Some(0)
+    }
+}
+
+/// A list that is decoded while it is walked, so that it needs neither heap nor capacity.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct List<'a, T> {
+    len: u32,
+    bytes: &'a [u8],
+    #[serde(skip)]
+    of: PhantomData<T>,
+}
+
+impl<T> Clone for List<'_, T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T> Copy for List<'_, T> {}
+
+impl<'a, T: Deserialize<'a>> List<'a, T> {
+    /// A list of `len` elements, encoded one after the other.
+    pub fn new(len: u32, bytes: &'a [u8]) -> Self {
+        Self { len, bytes, of: PhantomData }
+    }
+
+    /// Number of elements.
+    pub fn len(&self) -> usize {
+        self.len as usize
+    }
+
+    /// True if there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// The elements in order.
+    pub fn iter(&self) -> impl Iterator<Item = T> + use<'a, T> {
+        let mut bytes = self.bytes;
+        (0..self.len).map_while(move |_| {
+            let (element, rest) = postcard::take_from_bytes::<T>(bytes).ok()?;
+            bytes = rest;
+            Some(element)
+        })
+    }
+
+    /// True if the bytes hold exactly the announced elements.
+    pub(super) fn decodes(&self) -> bool {
+        let mut bytes = self.bytes;
+        for _ in 0..self.len {
+            match postcard::take_from_bytes::<T>(bytes) {
+                Ok((_, rest)) => bytes = rest,
+                Err(_) => return false,
+            }
+        }
+        bytes.is_empty()
+    }
+}

@@ -1,0 +1,178 @@
+//! Joint positions -> rotations: bones keep their length, swing from the wanted direction, twist from the source pose.
+
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
+
+use super::{Pose, Skeleton, World, unit};
+
+/// Steps of the rotation fit of a joint with several bones; it converges quadratically.
+const FIT_STEPS: usize = 4;
+
+/// Turns the joints of `source` so that every bone points at its target position, from the root outwards.
+///
+/// `world` is `source` after [`forward`](super::forward); `targets` are world positions, m, one a joint; the root goes to
+/// its target. A joint with one bone makes the smallest turn (so its twist is the source's, relative to the parent); a joint
+/// with several bones makes the turn that fits them best; a joint without bones keeps its local rotation. Targets equal to
+/// the source's positions give the source pose, to rounding.
+///
+/// Cost: about 150 multiply-adds a joint with one bone, 700 a joint with several.
+pub fn solve<const JOINTS: usize>(
+    skeleton: &Skeleton,
+    source: &Pose<JOINTS>,
+    world: &World<JOINTS>,
+    targets: &[Vector3<f32>; JOINTS],
+    pose: &mut Pose<JOINTS>,
+) {
+    let mut solved = World::<JOINTS>::identity();
+    let mut aims = skeleton.aims;
+    pose.root = targets.first().copied().unwrap_or(source.root);
+    for (joint, (parent, offset)) in skeleton.parents.iter().zip(skeleton.offsets).enumerate() {
+        let (origin, turned) = solved.parent(joint, *parent, pose.root);
+        let offset = if joint == 0 { Vector3::zeros() } else { Vector3::from(*offset) };
+        let here = origin + turned * offset;
+        let count = aims.iter().take_while(|[of, _]| *of as usize == joint).count();
+        let (own, rest) = aims.split_at_checked(count).unwrap_or((aims, &[]));
+        aims = rest;
+
+        let (Some(local), Some(from), Some(was)) =
+            (source.rotations.get(joint), world.positions.get(joint), world.rotations.get(joint))
+        else {
+            return;
+        };
+        let carried = turned * local;
+        // From the source's world to the solved one, as far as the parent has turned.
+        let change = carried * was.inverse();
+        let bones = own.iter().filter_map(|[_, to]| {
+            let (before, after) = (world.positions.get(*to as usize)?, targets.get(*to as usize)?);
+            Some((change * (before - from), after - here))
+        });
+        let turn = match own.len() {
+            0 => UnitQuaternion::identity(),
+            1 => bones.map(|(bone, wanted)| swing(bone, wanted)).next().unwrap_or_default(),
+            _ => best_turn(bones),
+        };
+        let rotation = turn * carried;
+        if let (Some(out), Some(position), Some(world)) =
+            (pose.rotations.get_mut(joint), solved.positions.get_mut(joint), solved.rotations.get_mut(joint))
+        {
+            *out = unit((turned.inverse() * rotation).into_inner());
+            *position = here;
+            *world = rotation;
+        }
+    }
+}
+
+/// The smallest rotation that turns `bone` into the direction of `wanted`.
+fn swing(bone: Vector3<f32>, wanted: Vector3<f32>) -> UnitQuaternion<f32> {
+    let lengths = libm::sqrtf(bone.dot(&bone) * wanted.dot(&wanted));
+    half_way(lengths + bone.dot(&wanted), bone.cross(&wanted), lengths)
+}
+
+/// The rotation that turns all bones best into the wanted directions, weighted by length (Gauss-Newton on the rotation
+/// vector; a trace of damping keeps the twist of bones that lie on one line).
+fn best_turn(bones: impl Iterator<Item = (Vector3<f32>, Vector3<f32>)> + Clone) -> UnitQuaternion<f32> {
+    let mut turn = UnitQuaternion::identity();
+    for _ in 0..FIT_STEPS {
+        let mut normal = Matrix3::zeros();
+        let mut right = Vector3::zeros();
+        let mut trace = 0.0;
+        for (bone, wanted) in bones.clone() {
+            let (long, wide) = (bone.dot(&bone), wanted.dot(&wanted));
+            if wide > 1e-12 {
+                // Weighted by the square of the bone's length, so that zero bones drop out.
+                let bone = turn * bone;
+                normal += Matrix3::from_diagonal_element(long) - bone * bone.transpose();
+                right += bone.cross(&wanted) * libm::sqrtf(long / wide);
+                trace += long;
+            }
+        }
+        normal += Matrix3::from_diagonal_element(1e-4 * trace + 1e-12);
+        let vector = solve_symmetric(&normal, right);
+        turn = unit((UnitQuaternion::new_unchecked(Quaternion::from_parts(1.0, vector * 0.5)) * turn).into_inner());
+    }
+    turn
+}
+
+/// `m^-1 v` for a positive definite 3 x 3 matrix, by cofactors.
+fn solve_symmetric(m: &Matrix3<f32>, v: Vector3<f32>) -> Vector3<f32> {
+    let (a, b, c) = (m.column(0).into_owned(), m.column(1).into_owned(), m.column(2).into_owned());
+    let (bc, ca, ab) = (b.cross(&c), c.cross(&a), a.cross(&b));
+    Vector3::new(bc.dot(&v), ca.dot(&v), ab.dot(&v)) / a.dot(&bc)
+}
+
+/// The quaternion with this real and imaginary part; the identity where both vanish against `scale` (a half turn has no
+/// smallest rotation, and a bone without length no direction).
+fn half_way(real: f32, imaginary: Vector3<f32>, scale: f32) -> UnitQuaternion<f32> {
+    if scale > 1e-12 && real > 1e-6 * scale {
+        unit(Quaternion::from_parts(real / scale, imaginary / scale))
+    } else {
+        UnitQuaternion::identity()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pose::forward;
+
+    // Hips with two legs and a spine behind a zero-length joint; an arm.
+    const PARENTS: [u16; 7] = [0, 0, 0, 0, 3, 4, 5];
+    const OFFSETS: [[f32; 3]; 7] =
+        [[0.0; 3], [0.1, -0.1, 0.0], [-0.1, -0.1, 0.0], [0.0; 3], [0.0, 0.3, 0.02], [0.2, 0.1, 0.0], [0.3, 0.0, 0.1]];
+    const AIMS: [[u16; 2]; 5] = [[0, 1], [0, 2], [3, 4], [4, 5], [5, 6]];
+
+    fn skeleton() -> Skeleton<'static> {
+        Skeleton::new(&PARENTS, &OFFSETS, &AIMS, &[[1, 2]]).unwrap()
+    }
+
+    fn pose(seed: f32) -> Pose<8> {
+        let mut pose = Pose::identity();
+        pose.root = Vector3::new(seed, 0.9, -seed);
+        for (j, rotation) in pose.rotations.iter_mut().enumerate() {
+            let k = j as f32 + seed;
+            *rotation =
+                unit(Quaternion::new(1.0, 0.3 * libm::sinf(k), 0.3 * libm::sinf(2.0 * k), 0.3 * libm::sinf(3.0 * k)));
+        }
+        pose
+    }
+
+    fn positions(pose: &Pose<8>) -> World<8> {
+        let mut world = World::identity();
+        forward(&skeleton(), pose, &mut world);
+        world
+    }
+
+    #[test]
+    fn own_positions_give_the_source_back() {
+        let source = pose(1.0);
+        let world = positions(&source);
+        let mut out = Pose::identity();
+        solve(&skeleton(), &source, &world, &world.positions, &mut out);
+        assert_eq!(out.root, source.root);
+        for (out, source) in out.rotations.iter().zip(&source.rotations).take(7) {
+            assert!((out.coords - source.coords).norm() < 2e-6);
+        }
+    }
+
+    #[test]
+    fn reaches_the_positions_of_another_pose() {
+        let source = pose(1.0);
+        let wanted = positions(&pose(1.4));
+        let mut out = Pose::identity();
+        solve(&skeleton(), &source, &positions(&source), &wanted.positions, &mut out);
+        for (reached, wanted) in positions(&out).positions.iter().zip(&wanted.positions).take(7) {
+            assert!((reached - wanted).norm() < 2e-4, "{reached} {wanted}");
+        }
+    }
+
+    #[test]
+    fn opposite_and_vanishing_directions_are_harmless() {
+        let source = pose(0.5);
+        let world = positions(&source);
+        let mut targets = world.positions;
+        targets[6] = targets[5] - (targets[6] - targets[5]);
+        targets[5] = targets[4];
+        let mut out = Pose::identity();
+        solve(&skeleton(), &source, &world, &targets, &mut out);
+        assert!(out.rotations.iter().all(|q| (q.norm() - 1.0).abs() < 1e-5));
+    }
+}
