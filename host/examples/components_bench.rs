@@ -1,0 +1,327 @@
+//! The numbers of `docs/components.md`, from the clips in `KINESIC_DATA` (default `../shared/data`):
+//! `cargo run --release -p kinesic-host --example components_bench -- TABLE [FOLDER]`, where `TABLE` is one of
+//!
+//! - `factor FOLDER`: factorises ten clips, and writes matrices and supports for `benches/peers/components.py`
+//! - `explained`: explained content against the number of components used
+//! - `transfer`: distances, bones and jerk of sparse components and PCA, with and without bone and smoothness terms
+//! - `count`: the automatic number of components beside held-out errors
+//! - `learn FOLDER`: 500 steps of Adam, and the matrices for `benches/peers/components.py`
+
+use std::error::Error;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use faer::linalg::solvers::Solve;
+use faer::{Mat, MatRef};
+use kinesic_host::clip::ReadOptions;
+use kinesic_host::components::{
+    FRAME_RATE, Factors, Motion, Objective, Optimiser, Sparsity, Weights, bone_error, bones, choose, content_distance,
+    gram, jerk, learn, noise, pca, sparse, style_distance,
+};
+use kinesic_host::prepare::Source;
+use kinesic_host::rig::Rig;
+
+type Fallible<T> = Result<T, Box<dyn Error>>;
+
+/// Clips of pairs marked `d`, 120 to 320 frames at 60 fps.
+const CLIPS: [&str; 10] = [
+    "bandai1/guide_normal_001.bvh",
+    "bandai1/guide_angry_001.bvh",
+    "bandai1/guide_tired_001.bvh",
+    "bandai1/bow_normal_001.bvh",
+    "bandai1/bow_active_001.bvh",
+    "bandai1/bow_masculinity_001.bvh",
+    "bandai1/bye_normal_001.bvh",
+    "bandai1/bye_angry_001.bvh",
+    "xia/neutral_01_000.bvh",
+    "xia/angry_01_000.bvh",
+];
+
+/// Content and style.
+const PAIRS: [[&str; 2]; 5] = [
+    ["bandai1/guide_normal_001.bvh", "bandai1/guide_angry_001.bvh"],
+    ["bandai1/bow_normal_001.bvh", "bandai1/bow_active_001.bvh"],
+    ["bandai1/bye_normal_001.bvh", "bandai1/bye_angry_001.bvh"],
+    ["xia/neutral_01_000.bvh", "xia/angry_01_000.bvh"],
+    ["xia/neutral_01_000.bvh", "xia/old_01_000.bvh"],
+];
+
+const COUNTS: [usize; 3] = [10, 30, 50];
+const DENSITIES: [f64; 6] = [0.05, 0.08, 0.12, 0.2, 0.3, 0.5];
+
+fn main() -> Fallible<()> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let folder = arguments.get(1).map(PathBuf::from);
+    match (arguments.first().map(String::as_str), folder) {
+        (Some("factor"), Some(folder)) => factor(&folder),
+        (Some("explained"), _) => explained(),
+        (Some("transfer"), _) => transfer(),
+        (Some("count"), _) => count(),
+        (Some("learn"), Some(folder)) => learning(&folder),
+        _ => Err("expected: factor FOLDER, explained, transfer, count or learn FOLDER".into()),
+    }
+}
+
+fn data() -> PathBuf {
+    std::env::var_os("KINESIC_DATA").map_or_else(|| PathBuf::from("../shared/data"), PathBuf::from)
+}
+
+fn source(name: &str) -> Fallible<Source> {
+    Ok(Source::read(&data().join(name), &ReadOptions::default())?)
+}
+
+/// A clip on its own rig.
+fn own(name: &str) -> Fallible<(Rig, Motion)> {
+    let source = source(name)?;
+    let rig = source.rig()?;
+    let motion = Motion::new(&rig.locals(&rig.poses(&source.on_rig(&rig, FRAME_RATE)?)));
+    Ok((rig, motion))
+}
+
+/// Content and style on the content's rig.
+fn pair([content, style]: [&str; 2]) -> Fallible<(Rig, Motion, Motion)> {
+    let (rig, motion) = own(content)?;
+    let other = Motion::scaled(&rig.locals(&rig.poses(&source(style)?.on_rig(&rig, FRAME_RATE)?)), motion.scale);
+    Ok((rig, motion, other))
+}
+
+/// Principal components thinned to their strongest groups: the baseline at equal density.
+fn strongest(motion: MatRef<'_, f64>, count: usize, density: f64) -> Factors {
+    let mut factors = pca(motion, count);
+    let channels = factors.components.nrows();
+    let size = |f: &Factors, k: usize, j: usize| (0..3).map(|c| f.components[(3 * j + c, k)].powi(2)).sum::<f64>();
+    let mut groups: Vec<(f64, usize, usize)> = (0..count)
+        .flat_map(|k| (0..channels / 3).map(move |j| (k, j)))
+        .map(|(k, j)| (size(&factors, k, j), k, j))
+        .collect();
+    groups.sort_by(|a, b| b.0.total_cmp(&a.0));
+    for (_, k, j) in groups.iter().skip((density * groups.len() as f64).round() as usize) {
+        (0..3).for_each(|c| factors.components[(3 * j + c, *k)] = 0.0);
+    }
+    factors
+}
+
+fn factor(folder: &Path) -> Fallible<()> {
+    fs::create_dir_all(folder)?;
+    let mut lines = String::from("clip,components,method,density,file,milliseconds,objective,sweeps\n");
+    for (index, name) in CLIPS.iter().enumerate() {
+        let (_, motion) = own(name)?;
+        let m = motion.values.as_ref();
+        write_matrix(&folder.join(format!("motion{index}.csv")), m)?;
+        for count in COUNTS {
+            for density in DENSITIES {
+                let sparsity = Sparsity { density: Some(density), ..Sparsity::default() };
+                // The median of five: other work on the machine does not decide.
+                let mut times = [0.0; 5];
+                for time in &mut times {
+                    let start = Instant::now();
+                    std::hint::black_box(sparse(m, count, &sparsity));
+                    *time = 1e3 * start.elapsed().as_secs_f64();
+                }
+                times.sort_by(f64::total_cmp);
+                let found = sparse(m, count, &sparsity);
+                let last = found.history.last().copied().unwrap_or_default();
+                let thinned = strongest(m, count, density);
+                for (method, factors) in [("kinesic", &found.factors), ("pca", &thinned)] {
+                    let file = format!("{method}-{index}-{count}-{density}.csv");
+                    write_matrix(&folder.join(&file), factors.components.transpose())?;
+                    let (time, objective, sweeps) =
+                        if method == "kinesic" { (times[2], last, found.history.len() - 1) } else { (0.0, 0.0, 0) };
+                    writeln!(
+                        lines,
+                        "{index},{count},{method},{},{file},{time:.3},{objective:.5},{sweeps}",
+                        factors.density()
+                    )?;
+                }
+            }
+        }
+        eprintln!("{index} {name}: {} x {}", motion.frames(), motion.channels());
+    }
+    fs::write(folder.join("ours.csv"), lines)?;
+    Ok(())
+}
+
+fn explained() -> Fallible<()> {
+    const USED: [usize; 8] = [1, 2, 3, 5, 8, 12, 20, 30];
+    println!("share of the content's variance explained by the strongest components, K = 30");
+    println!("clip                                sparse: {USED:?}      PCA: the same");
+    let mut sums = [[0.0; USED.len()]; 2];
+    for name in CLIPS {
+        let (_, motion) = own(name)?;
+        let m = motion.values.as_ref();
+        let total = m.squared_norm_l2();
+        let share = |factors: &Factors| {
+            USED.map(|used| {
+                // The first components as they are, with the weights that fit best: nothing else is changed.
+                let first = factors.components.subcols(0, used).to_owned();
+                let weights = project(m, &first);
+                1.0 - (m - weights * first.transpose()).squared_norm_l2() / total
+            })
+        };
+        let shares = [share(&sparse(m, 30, &Sparsity::default()).factors), share(&pca(m, 30))];
+        let row = |shares: &[f64]| shares.iter().map(|s| format!("{s:6.3}")).collect::<String>();
+        println!("{name:<32} {}   {}", row(&shares[0]), row(&shares[1]));
+        sums.iter_mut()
+            .zip(&shares)
+            .for_each(|(s, x)| s.iter_mut().zip(x).for_each(|(s, x)| *s += x / CLIPS.len() as f64));
+    }
+    let row = |shares: &[f64]| shares.iter().map(|s| format!("{s:6.3}")).collect::<String>();
+    println!("{:<32} {}   {}", "mean", row(&sums[0]), row(&sums[1]));
+    Ok(())
+}
+
+fn transfer() -> Fallible<()> {
+    println!(
+        "pair                          K basis  bones smooth | style  content  bones mean / max %  jerk / content / style  steps seconds"
+    );
+    for names in PAIRS {
+        let (rig, content, style) = pair(names)?;
+        let bones = bones(&rig);
+        let m = content.values.as_ref();
+        for count in COUNTS {
+            let all = Sparsity::default();
+            let bases = [
+                ("sparse", sparse(m, count, &all).factors, sparse(style.values.as_ref(), count, &all).factors),
+                ("PCA", pca(m, count), pca(style.values.as_ref(), count)),
+            ];
+            for (basis, own, wanted) in bases {
+                for (bone, smooth) in [(0.0, 0.0), (10.0, 0.0), (10.0, 1.0)] {
+                    let weights = Weights { bones: bone, smooth, ..Weights::default() };
+                    let objective = Objective::new(&own, &wanted, &bones, &content.mean, content.scale, weights);
+                    let start = Instant::now();
+                    let learned = learn(&objective, noise(content.channels(), count, 1), &Optimiser::default());
+                    let seconds = start.elapsed().as_secs_f64();
+                    let result = Factors { weights: own.weights.clone(), components: learned.components.clone() };
+                    let positions = rows(&result.product(), &content.mean, content.scale);
+                    let error = bone_error(&positions, content.channels(), &bones);
+                    let jerks = [
+                        positions,
+                        rows(&content.values, &content.mean, content.scale),
+                        rows(&style.values, &style.mean, content.scale),
+                    ]
+                    .map(|p| jerk(&p, content.channels(), FRAME_RATE));
+                    println!(
+                        "{:<28} {count:2} {basis:<6} {bone:5} {smooth:5}  | {:6.3} {:7.3}  {:8.3} / {:7.2}   {:8.1} / {:6.1} / {:6.1}  {:5} {seconds:6.3}",
+                        names[1].trim_end_matches(".bvh"),
+                        style_distance(&wanted.components, &learned.components),
+                        content_distance(&own.components, &learned.components),
+                        error.mean_percent,
+                        error.max_percent,
+                        jerks[0],
+                        jerks[1],
+                        jerks[2],
+                        learned.history.len() - 1,
+                    );
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+fn rows(values: &Mat<f64>, mean: &[f64], scale: f64) -> Vec<f64> {
+    let cells = (0..values.nrows()).flat_map(|f| (0..values.ncols()).map(move |c| (f, c)));
+    cells.map(|(f, c)| mean[c] + scale * values[(f, c)]).collect()
+}
+
+/// Weights of a motion on given components, damped as a pack's projection.
+fn project(motion: MatRef<'_, f64>, components: &Mat<f64>) -> Mat<f64> {
+    let count = components.ncols();
+    let mut normal = components.transpose() * components;
+    let energy: f64 = (0..count).map(|k| normal[(k, k)]).sum();
+    (0..count).for_each(|k| normal[(k, k)] += 1e-4 * energy / count as f64);
+    normal.partial_piv_lu().solve((motion * components).transpose().to_owned()).transpose().to_owned()
+}
+
+/// Error of every tenth-of-a-second block that was not trained on, cm a joint, projected on the components.
+fn held_out(motion: &Motion, count: usize) -> f64 {
+    let of = |fold: usize| (0..motion.frames()).filter(|f| (f / 6) % 5 == fold).collect::<Vec<_>>();
+    let mut sum = 0.0;
+    for fold in 0..5 {
+        let test = of(fold);
+        let train: Vec<usize> = (0..motion.frames()).filter(|f| (f / 6) % 5 != fold).collect();
+        let pick =
+            |frames: &[usize]| Mat::from_fn(frames.len(), motion.channels(), |f, c| motion.values[(frames[f], c)]);
+        let factors = sparse(pick(&train).as_ref(), count, &Sparsity::default()).factors;
+        let test = pick(&test);
+        let weights = project(test.as_ref(), &factors.components);
+        sum += (&test - weights * factors.components.transpose()).squared_norm_l2();
+    }
+    100.0 * motion.scale * (3.0 * sum / (motion.frames() * motion.channels()) as f64).sqrt()
+}
+
+fn count() -> Fallible<()> {
+    const TRIED: [usize; 11] = [5, 10, 15, 20, 25, 30, 35, 40, 45, 50, 55];
+    println!(
+        "held-out RMS joint error, cm, at K = {TRIED:?}; range: excess over the lowest within 10 % to 1 % of the range of the curve"
+    );
+    let mut inside = 0;
+    for name in CLIPS {
+        let (_, motion) = own(name)?;
+        let (choice, _) = choose(&motion, &Sparsity::default());
+        let curve = TRIED.map(|count| held_out(&motion, count));
+        let lowest = curve.iter().copied().fold(f64::INFINITY, f64::min);
+        let first = |share: f64| {
+            let good = |(_, error): &(&usize, &f64)| **error - lowest <= share * (curve[0] - lowest);
+            TRIED.iter().zip(&curve).find(good).map_or(0, |(count, _)| *count)
+        };
+        let (low, high) = (first(0.1), first(0.01));
+        let hit = (low..=high).contains(&choice.count);
+        inside += usize::from(hit);
+        let curve: String = curve.iter().map(|e| format!("{e:6.2}")).collect();
+        println!(
+            "{name:<30} {curve}  range {low}..{high}, chosen {} {}: {}",
+            choice.count,
+            if hit { "in" } else { "OUT" },
+            choice.reason
+        );
+    }
+    println!("{inside} of {}", CLIPS.len());
+    Ok(())
+}
+
+fn learning(folder: &Path) -> Fallible<()> {
+    fs::create_dir_all(folder)?;
+    let (rig, content, style) = pair(PAIRS[1])?;
+    let bones = bones(&rig);
+    let count = 30;
+    let own = sparse(content.values.as_ref(), count, &Sparsity::default()).factors;
+    let wanted = sparse(style.values.as_ref(), count, &Sparsity::default()).factors;
+    let objective = Objective::new(&own, &wanted, &bones, &content.mean, content.scale, Weights::default());
+    let start = noise(content.channels(), count, 1);
+    write_matrix(&folder.join("weights.csv"), own.weights.as_ref())?;
+    write_matrix(&folder.join("content.csv"), own.components.transpose())?;
+    write_matrix(&folder.join("gram.csv"), gram(wanted.components.as_ref()).as_ref())?;
+    write_matrix(&folder.join("start.csv"), start.transpose())?;
+    let mean = Mat::from_fn(1, content.channels(), |_, c| content.mean[c] / content.scale);
+    write_matrix(&folder.join("mean.csv"), mean.as_ref())?;
+    let table = Mat::from_fn(bones.len(), 3, |b, c| match c {
+        2 => bones[b].length / content.scale,
+        _ => bones[b].joints[c] as f64,
+    });
+    write_matrix(&folder.join("bones.csv"), table.as_ref())?;
+    let fixed = Optimiser { max_steps: 500, threshold: -1.0, ..Optimiser::default() };
+    let mut times = [0.0; 5];
+    let mut last = 0.0;
+    for time in &mut times {
+        let begin = Instant::now();
+        let learned = learn(&objective, start.clone(), &fixed);
+        *time = begin.elapsed().as_secs_f64();
+        last = learned.history.last().copied().unwrap_or_default();
+        assert_eq!(learned.history.len(), 501);
+    }
+    times.sort_by(f64::total_cmp);
+    println!("kinesic,{},{last}", times[2]);
+    Ok(())
+}
+
+fn write_matrix(path: &Path, matrix: MatRef<'_, f64>) -> Fallible<()> {
+    let mut text = String::new();
+    for r in 0..matrix.nrows() {
+        let row: Vec<String> = (0..matrix.ncols()).map(|c| format!("{:e}", matrix[(r, c)])).collect();
+        writeln!(text, "{}", row.join(","))?;
+    }
+    Ok(fs::write(path, text)?)
+}

@@ -1,0 +1,112 @@
+//! What stands inside a joint: OFFSET, CHANNELS, End Site.
+
+use nalgebra::Vector3;
+
+use super::cursor::Cursor;
+use super::fault::BvhFault;
+
+/// One motion channel of a joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Channel {
+    /// Position along axis 0, 1 or 2, in file units.
+    Position(usize),
+    /// Rotation about axis 0, 1 or 2, in degrees.
+    Rotation(usize),
+}
+
+const CHANNELS: [(&str, Channel); 6] = [
+    ("Xposition", Channel::Position(0)),
+    ("Yposition", Channel::Position(1)),
+    ("Zposition", Channel::Position(2)),
+    ("Xrotation", Channel::Rotation(0)),
+    ("Yrotation", Channel::Rotation(1)),
+    ("Zrotation", Channel::Rotation(2)),
+];
+
+impl Channel {
+    fn from_name(name: &str) -> Option<Channel> {
+        CHANNELS.iter().find(|(n, _)| n.eq_ignore_ascii_case(name)).map(|&(_, c)| c)
+    }
+
+    pub(super) fn name(self) -> &'static str {
+        CHANNELS.iter().find(|(_, c)| *c == self).map_or("channel", |&(n, _)| n)
+    }
+}
+
+/// Whether a word ends a list of numbers or channels.
+fn is_keyword(word: &str) -> bool {
+    const KEYWORDS: [&str; 8] = ["{", "}", "OFFSET", "CHANNELS", "JOINT", "END", "MOTION", "ROOT"];
+    KEYWORDS.iter().any(|k| word.eq_ignore_ascii_case(k))
+}
+
+/// Three numbers, no more and no fewer.
+pub(super) fn offset(cursor: &mut Cursor<'_>, line: usize, joint: &str) -> Result<Vector3<f64>, BvhFault> {
+    let (mut values, mut found) = ([0.0; 3], 0);
+    while let Some(word) = cursor.peek().filter(|w| !is_keyword(w)) {
+        match word.parse::<f64>() {
+            Ok(value) if value.is_finite() => {
+                if let Some(slot) = values.get_mut(found) {
+                    *slot = value;
+                }
+            }
+            _ if found >= 3 => break, // Not ours: the joint's next line.
+            _ => {
+                return Err(BvhFault::OffsetNumber { line, joint: joint.into(), found: word.into() });
+            }
+        }
+        found += 1;
+        cursor.word();
+    }
+    match found {
+        3 => Ok(Vector3::from(values)),
+        _ => Err(BvhFault::OffsetCount { line, joint: joint.into(), found }),
+    }
+}
+
+/// The announced number of known channels, each once.
+pub(super) fn channels(cursor: &mut Cursor<'_>, line: usize, joint: &str) -> Result<Vec<Channel>, BvhFault> {
+    let count = cursor.peek().filter(|w| !is_keyword(w)).unwrap_or("");
+    let Some(announced) = count.parse::<usize>().ok().filter(|&n| n <= 6) else {
+        return Err(BvhFault::ChannelCount { line, joint: joint.into(), found: count.into() });
+    };
+    cursor.word();
+    let mut list = Vec::with_capacity(announced);
+    while let Some(word) = cursor.peek().filter(|w| !is_keyword(w)) {
+        let Some(channel) = Channel::from_name(word) else {
+            if list.len() == announced {
+                break; // Not ours: the joint's next line.
+            }
+            return Err(BvhFault::UnknownChannel { line, joint: joint.into(), found: word.into() });
+        };
+        if list.contains(&channel) {
+            return Err(BvhFault::DuplicateChannel { line, joint: joint.into(), found: word.into() });
+        }
+        list.push(channel);
+        cursor.word();
+    }
+    if list.len() != announced {
+        return Err(BvhFault::ChannelMismatch { line, joint: joint.into(), announced, found: list.len() });
+    }
+    Ok(list)
+}
+
+/// `Site { OFFSET x y z }`; the word after End is not looked at, some files give the tip a name.
+pub(super) fn end_site(cursor: &mut Cursor<'_>, joint: &str) -> Result<Vector3<f64>, BvhFault> {
+    let broken = |cursor: &Cursor<'_>, found: Option<&str>| BvhFault::BrokenEndSite {
+        line: cursor.line(),
+        joint: joint.into(),
+        found: found.unwrap_or("the end of the file").into(),
+    };
+    cursor.name();
+    for expected in ["{", "OFFSET"] {
+        let word = cursor.word();
+        if !word.is_some_and(|w| w.eq_ignore_ascii_case(expected)) {
+            return Err(broken(cursor, word));
+        }
+    }
+    let tip = offset(cursor, cursor.line(), &format!("{joint} (End Site)"))?;
+    match cursor.word() {
+        Some("}") => Ok(tip),
+        word => Err(broken(cursor, word)),
+    }
+}

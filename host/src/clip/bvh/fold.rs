@@ -1,0 +1,65 @@
+//! Choosing the clip's root: below resting scene roots, the joint that travels.
+
+use super::assemble::{Draft, STILL, Track};
+
+/// A rotation that turns by less is at rest, rad.
+const STILL_ANGLE: f64 = 1e-3;
+
+impl Draft {
+    /// The first joint that travels: the root, or the last of a chain below a resting root.
+    fn carrier(&self) -> usize {
+        let moves = |t: &Option<Track>| t.as_ref().is_some_and(|t| t.spread > STILL);
+        self.tracks.iter().position(moves).filter(|&i| self.is_lone_chain(i)).unwrap_or(0)
+    }
+
+    /// Whether everything hangs on `joint`: each joint above it has one child.
+    fn is_lone_chain(&self, joint: usize) -> bool {
+        (1..=joint).all(|i| self.joints[i].parent == Some(i - 1))
+            && (0..joint).all(|i| self.joints.iter().filter(|j| j.parent == Some(i)).count() == 1)
+    }
+
+    /// Makes the joint that travels, or the pelvis, the root; see the [module's text](super).
+    pub fn fold_root(&mut self, pelvis: Option<usize>) {
+        let carrier = self.carrier();
+        let still_above = (0..carrier).all(|i| self.is_still(i));
+        let target = match pelvis {
+            Some(pelvis) if self.is_lone_chain(pelvis) => pelvis,
+            Some(pelvis) => {
+                let (root, pelvis) = (&self.joints[0].name, &self.joints[pelvis].name);
+                self.notes.push(format!("The pelvis '{pelvis}' is not the root: '{root}' carries other joints too."));
+                return;
+            }
+            None if still_above => carrier,
+            None => 0,
+        };
+        for _ in 0..target {
+            let (above, still) = (self.joints[0].name.clone(), self.is_still(0));
+            self.fold_once();
+            let what = if still { "stays still" } else { "moves too; both motions were composed" };
+            self.notes.push(format!("'{}' became the root; '{above}' above it {what}.", self.joints[0].name));
+        }
+    }
+
+    fn is_still(&self, joint: usize) -> bool {
+        let n = self.joints.len();
+        let still = self.tracks[joint].as_ref().is_none_or(|t| t.spread <= STILL);
+        let first = self.rotations[joint];
+        still && self.rotations.iter().skip(joint).step_by(n).all(|r| r.angle_to(&first) <= STILL_ANGLE)
+    }
+
+    /// Composes joint 0 into joint 1, its only child.
+    fn fold_once(&mut self) {
+        let n = self.joints.len();
+        let positions = (0..self.frames)
+            .map(|f| self.position(0, f) + self.rotations[f * n] * self.position(1, f))
+            .collect::<Vec<_>>();
+        let all = self.rotations.chunks_exact(n);
+        self.rotations = all.flat_map(|r| std::iter::once(r[0] * r[1]).chain(r[2..].iter().copied())).collect();
+        self.joints.remove(0);
+        for joint in &mut self.joints {
+            joint.parent = joint.parent.and_then(|p| p.checked_sub(1));
+        }
+        self.tracks.remove(0);
+        self.tracks[0] = Track::new(positions, self.joints[0].offset);
+    }
+}

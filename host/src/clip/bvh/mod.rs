@@ -1,0 +1,71 @@
+//! BVH (Biovision hierarchy), read and written.
+//!
+//! What the format leaves open, and what is done here:
+//! - **Position channels replace the joint's OFFSET**, they are not added to it (Blender and the Bandai-Namco clips agree).
+//!   On a joint below the root, positions that stay put are the bone; positions that vary give their mean, with a note.
+//! - **Rotation channels multiply in the order in which they are listed**: `Zrotation Xrotation Yrotation` is `Rz Rx Ry`,
+//!   degrees, acting on column vectors. Any order, any subset of the six channels, on any joint.
+//! - **Static scene roots are folded**: where the root has one child and that child carries the motion (or is the pelvis by
+//!   the joint map), the child becomes the clip's root; both transforms are composed, so nothing moves in the world.
+//! - **Units and up axis** are not in the file, see [`units`](super::units).
+//!
+//! Keywords may be in any case, spacing is free, lines may end in CRLF, a byte-order mark is skipped, joint names may hold
+//! blanks and colons. Everything else is refused by line number, see [`BvhFault`].
+
+mod assemble;
+mod cursor;
+pub mod euler;
+mod fault;
+mod fields;
+mod fold;
+mod hierarchy;
+mod motion;
+mod orient;
+pub mod write;
+
+use std::path::Path;
+
+pub use fault::BvhFault;
+
+use super::map::MapError;
+use super::{Clip, ReadError, ReadOptions};
+
+/// Most joints a file may have.
+pub const MAX_JOINTS: usize = 1024;
+/// Deepest nesting a file may have.
+pub const MAX_DEPTH: usize = 256;
+
+/// Why BVH text is refused; [`ReadError`] without the file's name.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ParseError {
+    /// The text is broken.
+    #[error("{0}")]
+    Fault(#[from] BvhFault),
+    /// The map in the options does not fit.
+    #[error("the skeleton map does not fit: {0}")]
+    Map(#[from] MapError),
+    /// The size fits no unit.
+    #[error("the unit of length cannot be told from {0}")]
+    UnknownUnits(String),
+}
+
+impl ParseError {
+    /// The same error, with the file's name.
+    pub fn at(self, path: &Path) -> ReadError {
+        let path = path.into();
+        match self {
+            ParseError::Fault(fault) => ReadError::Bvh { path, fault },
+            ParseError::Map(error) => ReadError::Map { path, error },
+            ParseError::UnknownUnits(measured) => ReadError::UnknownUnits { path, measured },
+        }
+    }
+}
+
+/// Parses the bytes of a BVH file. Cost: one float parsed per value and one sine and cosine per rotation channel.
+pub fn parse(bytes: &[u8], options: &ReadOptions) -> Result<Clip, ParseError> {
+    let text = cursor::text(bytes)?;
+    let mut cursor = cursor::Cursor::new(text);
+    let joints = hierarchy::parse(&mut cursor)?;
+    let motion = motion::parse(cursor, &joints)?;
+    assemble::clip(joints, motion, options)
+}

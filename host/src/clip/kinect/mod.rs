@@ -1,0 +1,184 @@
+//! Kinect recordings (Kinder-Gator): a CSV with `Timestamp` in ms and X, Y, Z in m of 20 joints a row.
+//!
+//! The way in: missing cells are bridged, the uneven clock becomes an even one, camera coordinates become the world's, a
+//! skeleton with rigid bones is fitted, and its rotations are solved for. Each step that changes something leaves a note.
+//!
+//! **Coordinates.** The sensor looks along +Z with Y up and X to *its* left: right-handed, in metres. A person who faces it
+//! looks along -Z and has the left hand at -X. A half turn about Y makes this the convention of our clips (facing +Z, left
+//! at +X); nothing is mirrored. Then the hips of the first frame go to x = z = 0 and the feet on the ground: y = 0 is the
+//! height that the lower foot keeps for nine tenths of the time.
+
+mod fault;
+mod fit;
+mod table;
+
+pub use fault::KinectFault;
+
+use nalgebra::Vector3;
+use std::path::Path;
+
+use super::{Clip, ReadError, read, solve};
+
+/// The 20 joints, parents before children, depth first, with the index of the parent.
+const JOINTS: [(&str, Option<usize>); 20] = [
+    ("HipCenter", None),
+    ("Spine", Some(0)),
+    ("ShoulderCenter", Some(1)),
+    ("Head", Some(2)),
+    ("ShoulderLeft", Some(2)),
+    ("ElbowLeft", Some(4)),
+    ("WristLeft", Some(5)),
+    ("HandLeft", Some(6)),
+    ("ShoulderRight", Some(2)),
+    ("ElbowRight", Some(8)),
+    ("WristRight", Some(9)),
+    ("HandRight", Some(10)),
+    ("HipLeft", Some(0)),
+    ("KneeLeft", Some(12)),
+    ("AnkleLeft", Some(13)),
+    ("FootLeft", Some(14)),
+    ("HipRight", Some(0)),
+    ("KneeRight", Some(16)),
+    ("AnkleRight", Some(17)),
+    ("FootRight", Some(18)),
+];
+
+/// Positions of one frame.
+type Skeleton20 = [Vector3<f64>; 20];
+
+/// A pause between rows that is worth a note, s (three frames of the sensor).
+const PAUSE: f64 = 0.1;
+
+/// How to read a recording.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KinectOptions {
+    /// Frames per second of the clip.
+    pub fps: f64,
+    /// Longest time, s, over which missing numbers are bridged by straight lines.
+    pub max_gap: f64,
+}
+
+impl Default for KinectOptions {
+    fn default() -> Self {
+        KinectOptions { fps: 30.0, max_gap: 0.25 }
+    }
+}
+
+/// A Kinect recording: the clip, and what was measured.
+#[derive(Clone, Debug)]
+pub struct Recording {
+    /// The fitted clip: rigid bones, rotations.
+    pub clip: Clip,
+    /// The measured positions on the clip's clock and in its coordinates, row-major `[frames x 20]`, m. Bones stretch here.
+    pub positions: Vec<Vector3<f64>>,
+    /// Root mean square distance between fitted and measured joints, cm.
+    pub residual_cm: f64,
+}
+
+/// Reads a recording with its measured positions; [`read_with`](crate::clip::read_with) gives the clip alone.
+pub fn read_recording(path: impl AsRef<Path>, options: &KinectOptions) -> Result<Recording, ReadError> {
+    let path = path.as_ref();
+    parse(&read::slurp(path)?, options).map_err(|fault| ReadError::Kinect { path: path.into(), fault })
+}
+
+/// Parses the bytes of a recording.
+pub fn parse(bytes: &[u8], options: &KinectOptions) -> Result<Recording, KinectFault> {
+    if !(1.0..=1000.0).contains(&options.fps) {
+        return Err(KinectFault::Rate { found: options.fps });
+    }
+    let mut table = table::read(bytes)?;
+    let mut notes = Vec::new();
+    if table.repeated > 0 {
+        notes.push(format!("{} row(s) that repeat a timestamp were dropped.", table.repeated));
+    }
+    let duration = table.times.last().copied().unwrap_or(0.0);
+    if table.rows.len() < 2 {
+        return Err(KinectFault::TooShort { found: table.rows.len() });
+    }
+    if duration > 86_400.0 {
+        return Err(KinectFault::TooLong { seconds: duration });
+    }
+    let bridged = table::bridge(&mut table, options.max_gap)?;
+    if bridged > 0 {
+        notes.push(format!("Missing numbers in {bridged} row(s) were bridged by straight lines."));
+    }
+    let pause = table.times.windows(2).map(|w| w[1] - w[0]).fold(0.0, f64::max);
+    notes.push(format!(
+        "Uneven clock ({:.1} rows/s on the average, longest step {:.0} ms): resampled to {} fps by timestamp{}.",
+        (table.rows.len() - 1) as f64 / duration,
+        1000.0 * pause,
+        options.fps,
+        if pause > PAUSE { ", longer steps filled by straight lines" } else { "" },
+    ));
+
+    let mut frames = even_clock(&table, options.fps);
+    notes.push(to_world(&mut frames));
+    if let Some(note) = sides(&frames) {
+        notes.push(note);
+    }
+    let skeleton = fit::skeleton(&frames)?;
+    let rotations = frames.iter().flat_map(|f| solve::rotations(&skeleton, f, None)).collect();
+    let root = frames.iter().map(|f| f[0]).collect();
+    let mut clip = Clip { skeleton, frame_time: 1.0 / options.fps, root, rotations, notes };
+    clip.make_signs_continuous();
+
+    let positions: Vec<Vector3<f64>> = frames.into_iter().flatten().collect();
+    let squares: f64 = clip.all_positions().iter().zip(&positions).map(|(a, b)| (a - b).norm_squared()).sum();
+    let residual_cm = 100.0 * (squares / positions.len() as f64).sqrt();
+    clip.notes.push(format!(
+        "Positions only: a skeleton with rigid bones was fitted, {residual_cm:.1} cm rms off the joints."
+    ));
+    Ok(Recording { clip, positions, residual_cm })
+}
+
+/// Positions at even steps, by straight lines between the rows.
+fn even_clock(table: &table::Table, fps: f64) -> Vec<Skeleton20> {
+    let duration = table.times.last().copied().unwrap_or(0.0);
+    let count = 1 + (duration * fps + 1e-6).floor() as usize;
+    let mut after = 1;
+    let frames = (0..count).filter_map(|frame| {
+        let time = frame as f64 / fps;
+        while after + 1 < table.times.len() && table.times[after] < time {
+            after += 1;
+        }
+        let (t0, t1) = (*table.times.get(after - 1)?, *table.times.get(after)?);
+        let (a, b) = (table.rows.get(after - 1)?, table.rows.get(after)?);
+        let part = ((time - t0) / (t1 - t0)).clamp(0.0, 1.0);
+        Some(std::array::from_fn(|j| a[j].lerp(&b[j], part)))
+    });
+    frames.collect()
+}
+
+/// Camera coordinates to ours, see the [module's text](self); returns the note.
+fn to_world(frames: &mut [Skeleton20]) -> String {
+    const FEET: [usize; 2] = [15, 19];
+    let mut lower: Vec<f64> =
+        frames.iter().map(|f| FEET.iter().map(|&j| f[j].y).fold(f64::INFINITY, f64::min)).collect();
+    lower.sort_by(f64::total_cmp);
+    let ground = lower.get(lower.len() / 10).copied().unwrap_or(0.0);
+    let start = frames.first().map_or(Vector3::zeros(), |f| Vector3::new(f[0].x, ground, f[0].z));
+    for position in frames.iter_mut().flatten() {
+        let p = *position - start;
+        *position = Vector3::new(-p.x, p.y, -p.z);
+    }
+    format!(
+        "Camera coordinates turned half round about Y (the person faces +Z), feet put on the ground ({:+.2} m), first hips \
+         to x = z = 0.",
+        -ground
+    )
+}
+
+/// Notes when the toes point against the direction in which left and right say the person faces.
+fn sides(frames: &[Skeleton20]) -> Option<String> {
+    let facing = |f: &Skeleton20| {
+        let left = (f[12] - f[16]) + (f[4] - f[8]);
+        let forward = left.cross(&Vector3::y());
+        let toes = (f[15] - f[14]) + (f[19] - f[18]);
+        forward.dot(&toes)
+    };
+    let against = frames.iter().filter(|f| facing(f) < 0.0).count();
+    (against * 10 > frames.len() * 8).then(|| {
+        let percent = 100 * against / frames.len();
+        format!("Left and right may be exchanged: the toes point backwards in {percent} % of the frames.")
+    })
+}

@@ -1,0 +1,163 @@
+//! Which joint is which: 21 canonical joints, the layouts of the usual sources, map files for all others.
+//!
+//! [`SkeletonMap`] holds *names* (built in, or from a TOML file); resolved against a [`Skeleton`] it becomes a [`JointMap`]
+//! of *indices*.
+
+mod error;
+mod file;
+mod layouts;
+mod partners;
+mod suggest;
+
+use std::path::Path;
+
+pub use error::MapError;
+pub use file::SkeletonMap;
+pub use partners::mirror_partners;
+
+use super::Skeleton;
+
+/// Number of canonical joints.
+pub const CANONICAL: usize = 21;
+
+/// The joints that every humanoid skeleton is compared by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[repr(u8)]
+#[allow(missing_docs)] // Anatomy; L and R are the person's own sides. Shoulder, hip, ... name the joint, not the bone.
+pub enum Canonical {
+    Pelvis,
+    Spine,
+    Chest,
+    Neck,
+    Head,
+    LCollar,
+    LShoulder,
+    LElbow,
+    LWrist,
+    RCollar,
+    RShoulder,
+    RElbow,
+    RWrist,
+    LHip,
+    LKnee,
+    LAnkle,
+    LToe,
+    RHip,
+    RKnee,
+    RAnkle,
+    RToe,
+}
+
+use Canonical::*;
+
+impl Canonical {
+    /// All of them, in the order of their numbers.
+    pub const ALL: [Canonical; CANONICAL] = [
+        Pelvis, Spine, Chest, Neck, Head, LCollar, LShoulder, LElbow, LWrist, RCollar, RShoulder, RElbow, RWrist, LHip,
+        LKnee, LAnkle, LToe, RHip, RKnee, RAnkle, RToe,
+    ];
+
+    /// Those without which a skeleton is not taken for a known layout; spine, neck, collars and toes may be missing.
+    const CORE: [Canonical; 14] =
+        [Pelvis, Head, LShoulder, LElbow, LWrist, RShoulder, RElbow, RWrist, LHip, LKnee, LAnkle, RHip, RKnee, RAnkle];
+
+    /// Name in map files: `pelvis`, `l_knee`, ...
+    pub fn name(self) -> &'static str {
+        const NAMES: [&str; CANONICAL] = [
+            "pelvis",
+            "spine",
+            "chest",
+            "neck",
+            "head",
+            "l_collar",
+            "l_shoulder",
+            "l_elbow",
+            "l_wrist",
+            "r_collar",
+            "r_shoulder",
+            "r_elbow",
+            "r_wrist",
+            "l_hip",
+            "l_knee",
+            "l_ankle",
+            "l_toe",
+            "r_hip",
+            "r_knee",
+            "r_ankle",
+            "r_toe",
+        ];
+        NAMES[self as usize]
+    }
+
+    /// The joint with this name.
+    pub fn from_name(name: &str) -> Option<Canonical> {
+        Self::ALL.into_iter().find(|c| c.name() == name)
+    }
+
+    /// The same joint on the other side; joints of the middle are their own.
+    pub fn mirrored(self) -> Canonical {
+        let name = self.name();
+        let other = match name.split_once('_') {
+            Some(("l", rest)) => Self::ALL.into_iter().find(|c| c.name().strip_prefix("r_") == Some(rest)),
+            Some(("r", rest)) => Self::ALL.into_iter().find(|c| c.name().strip_prefix("l_") == Some(rest)),
+            _ => None,
+        };
+        other.unwrap_or(self)
+    }
+}
+
+/// Where the canonical joints are in one skeleton, and which joints mirror each other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointMap {
+    layout: String,
+    joints: [Option<usize>; CANONICAL],
+    partners: Vec<Option<usize>>,
+}
+
+impl JointMap {
+    /// Recognises one of the known layouts by its joint names: cmu31 (also Xia), bandai22, m21, daz43, aalto19, kinect20,
+    /// cc24 (`CC_Base_*`), mixamo. Name spaces (`mixamorig:`) are ignored.
+    ///
+    /// `None` where no layout has all of pelvis, head and the limbs' joints; then a map file is needed.
+    pub fn detect(skeleton: &Skeleton) -> Option<JointMap> {
+        layouts::detect(skeleton)
+    }
+
+    /// Reads a map file and resolves it against a skeleton. See [`SkeletonMap::parse`] for the format.
+    pub fn read(path: impl AsRef<Path>, skeleton: &Skeleton) -> Result<JointMap, MapError> {
+        SkeletonMap::read(path)?.resolve(skeleton)
+    }
+
+    /// A map from indices that are known, in the order of [`Canonical::ALL`]; those beyond the skeleton are dropped.
+    pub fn from_indices(layout: &str, joints: [Option<usize>; CANONICAL], skeleton: &Skeleton) -> JointMap {
+        let joints = joints.map(|joint| joint.filter(|j| *j < skeleton.len()));
+        Self::new(layout.to_owned(), joints, skeleton)
+    }
+
+    fn new(layout: String, joints: [Option<usize>; CANONICAL], skeleton: &Skeleton) -> JointMap {
+        let mut map = JointMap { layout, joints, partners: Vec::new() };
+        map.partners = mirror_partners(skeleton, Some(&map));
+        map
+    }
+
+    /// Name of the layout, or of the map file.
+    pub fn layout(&self) -> &str {
+        &self.layout
+    }
+
+    /// Index of a canonical joint in the skeleton. Two canonical joints may share one (Kinect: chest and neck).
+    pub fn joint(&self, canonical: Canonical) -> Option<usize> {
+        self.joints[canonical as usize]
+    }
+
+    /// The canonical joint that sits at an index, the first where two share it.
+    pub fn canonical(&self, joint: usize) -> Option<Canonical> {
+        Canonical::ALL.into_iter().find(|&c| self.joint(c) == Some(joint))
+    }
+
+    /// The joint's counterpart on the other side; a joint of the middle is its own. `None` where a side joint has no
+    /// counterpart, and for an index beyond the skeleton.
+    pub fn mirror_partner(&self, joint: usize) -> Option<usize> {
+        self.partners.get(joint).copied().flatten()
+    }
+}

@@ -1,0 +1,178 @@
+//! `kinesic apply`.
+
+use std::path::PathBuf;
+
+use clap::ValueEnum;
+use kinesic::model::ModelMeta;
+use kinesic::pose::Controls;
+use kinesic::{Pack, Pose};
+use kinesic_host::clip::Clip;
+use kinesic_host::components;
+use kinesic_host::pack::PackFile;
+use kinesic_host::prepare::Source;
+use kinesic_host::quality::{self, Quality};
+use kinesic_host::rig::{MAX_JOINTS, Rig};
+use kinesic_host::translate::{self, Timing};
+use miette::{IntoDiagnostic, miette};
+use serde::Serialize;
+
+use super::clips::Reading;
+use super::mask;
+use super::output::{check_output, print_json, spinner};
+
+/// Play a clip through a pack, frame by frame as the device would, and write the result as BVH
+///
+/// For packs of translators and of style components.
+///
+/// The clip may have another skeleton and frame rate than the pack: it is put on the pack's skeleton, and the result is
+/// written on that skeleton, in centimetres, at the pack's frame rate.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  kinesic apply angry.kin walk.bvh --out angry-walk.bvh
+  kinesic apply angry.kin walk.bvh --out a-little.bvh --strength 0.4
+  kinesic apply angry.kin walk.bvh --out arms-only.bvh --mask '*=0,LeftArm+=1,r_shoulder+=1'
+  kinesic apply child.kin jump.csv --out child-jump.bvh --timing learned
+  kinesic apply components.kin --stored --out stored.bvh")]
+pub struct Args {
+    /// Pack to play
+    #[arg(value_name = "PACK.kin")]
+    pack: PathBuf,
+    /// Clip to play (BVH or Kinect CSV)
+    #[arg(value_name = "CLIP", required_unless_present = "stored")]
+    clip: Option<PathBuf>,
+    /// Play the motion that a pack of style components stores, instead of a clip
+    #[arg(long, conflicts_with = "clip")]
+    stored: bool,
+    /// BVH to write
+    #[arg(long, value_name = "FILE.bvh")]
+    out: PathBuf,
+    /// 0 = the clip itself, 1 = the style as learned, beyond = exaggerated
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
+    strength: f32,
+    /// Weights of joints, 0 = untouched, 1 = translated, by the pack's names or canonical ones; JOINT+=W means all joints below
+    /// it too, *=W is the rest
+    #[arg(long, value_name = "JOINT=W,...")]
+    mask: Vec<String>,
+    /// Keep the clip's timing, or stretch and squeeze it as learned
+    #[arg(long, value_enum, default_value_t = Clock::Keep)]
+    timing: Clock,
+    /// Print the results as one JSON object
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    reading: Reading,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Clock {
+    /// Frame for frame, as on a live stream
+    Keep,
+    /// As learned from the training pairs
+    Learned,
+}
+
+#[derive(Serialize)]
+struct Summary {
+    out: String,
+    frames: usize,
+    frame_rate: f64,
+    source: Option<Quality>,
+    styled: Quality,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> miette::Result<()> {
+    check_output(&args.out, "bvh")?;
+    if !args.strength.is_finite() {
+        return Err(miette!("--strength {}: expected a number, usually from 0 to 1", args.strength));
+    }
+    let file = PackFile::read(&args.pack).into_diagnostic()?;
+    let pack = file.pack().into_diagnostic()?;
+    let rig = Rig::from_pack(&pack).into_diagnostic()?;
+    let mut controls = Controls { strength: args.strength, ..Controls::default() };
+    mask::apply(&args.mask, &rig, 1.0, &mut controls.mask)?;
+    let bar = spinner();
+    bar.set_message("playing");
+    let fps = f64::from(pack.metadata().frame_rate);
+    let clip = match &args.clip {
+        Some(path) => {
+            let source = Source::read(path, &args.reading.options()?).into_diagnostic()?;
+            Some(source.on_rig(&rig, fps).into_diagnostic()?)
+        }
+        None => None,
+    };
+    let played = play(args, &pack, &rig, clip.as_ref(), controls)?;
+    let styled = rig.clip(&played.poses, 1.0 / fps);
+    styled.write_bvh(&args.out).into_diagnostic()?;
+    bar.finish_and_clear();
+    let summary = Summary {
+        out: args.out.display().to_string(),
+        frames: styled.frames(),
+        frame_rate: fps,
+        source: clip.as_ref().map(|clip| quality::measure(clip, &rig.map)),
+        styled: quality::measure(&styled, &rig.map),
+    };
+    if args.json {
+        return print_json(&summary);
+    }
+    let [low, high] = played.plausible;
+    if !(low..=high).contains(&args.strength) {
+        println!("note: strength {} is outside the plausible range of this pack, {low} to {high}", args.strength);
+    }
+    println!("            foot slide, cm/s   jerk, m/s^3");
+    let rows = summary.source.iter().map(|q| ("source", q)).chain([("styled", &summary.styled)]);
+    for (name, q) in rows {
+        println!("{name:<10} {:>17.1} {:>13.1}", q.foot_slide_cm_s, q.jerk_m_s3);
+    }
+    println!("{}: {} frames at {fps} a second", summary.out, summary.frames);
+    Ok(())
+}
+
+/// What a pack made, and the strengths that it calls plausible.
+struct Played {
+    poses: Vec<Pose<MAX_JOINTS>>,
+    plausible: [f32; 2],
+}
+
+/// Plays with the engine that the pack holds.
+fn play(
+    args: &Args,
+    pack: &Pack,
+    rig: &Rig,
+    clip: Option<&Clip>,
+    controls: Controls<MAX_JOINTS>,
+) -> miette::Result<Played> {
+    let models: Vec<ModelMeta> = pack.metadata().models.iter().collect();
+    if let (Some(meta), Some(clip)) = (models.iter().find_map(|m| m.translator()), clip) {
+        let timing = match args.timing {
+            Clock::Keep => Timing::Keep,
+            Clock::Learned => Timing::Learned,
+        };
+        let poses = translate::play(pack, &rig.poses(clip), &translate::Settings { controls, timing });
+        return Ok(Played { poses: poses.into_diagnostic()?, plausible: meta.strength });
+    }
+    if let Some(meta) = models.iter().find_map(|m| m.components()) {
+        if matches!(args.timing, Clock::Learned) {
+            return Err(miette!("--timing learned: a pack of style components has no timing, only a translator has"));
+        }
+        let settings = components::Settings { controls };
+        let poses = match clip {
+            Some(clip) => components::play(pack, &rig.poses(clip), &settings),
+            None => components::play_stored(pack, &settings),
+        };
+        let poses = poses.into_diagnostic()?;
+        if poses.is_empty() {
+            return Err(miette!(help = "name a clip to play", "the pack stores no motion"));
+        }
+        return Ok(Played { poses, plausible: meta.strength });
+    }
+    let (found, help) = match args.stored {
+        true => ("--stored: the pack holds no style components, which alone store a motion", "name a clip to play"),
+        false => (
+            "the pack holds neither a translator nor style components",
+            "for body mechanics there are kinesic decouple, modulate, mix and blend",
+        ),
+    };
+    Err(miette!(help = help, "{}: {found}", args.pack.display()))
+}

@@ -1,0 +1,206 @@
+//! Arguments that name clips and pairs of clips.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use kinesic_host::clip::{ReadOptions, SkeletonMap, Unit, UpAxis};
+use miette::{IntoDiagnostic, miette};
+
+/// How clips are read.
+#[derive(Args, Clone, Debug, Default)]
+pub struct Reading {
+    /// Skeleton map (TOML) that says which joint is which, for skeletons with unknown joint names
+    #[arg(long, value_name = "FILE")]
+    pub map: Option<PathBuf>,
+    /// Unit of length of the BVH files: m, cm, mm, inch, cmu (default: found from the size of the skeleton)
+    #[arg(long, value_name = "UNIT")]
+    pub units: Option<Unit>,
+    /// Up axis of the BVH files: y or z (default: found from rest pose and motion)
+    #[arg(long, value_name = "AXIS")]
+    pub up: Option<UpAxis>,
+}
+
+impl Reading {
+    /// Options for the reader.
+    pub fn options(&self) -> miette::Result<ReadOptions> {
+        let map = self.map.as_ref().map(SkeletonMap::read).transpose().into_diagnostic()?;
+        Ok(ReadOptions { units: self.units, up: self.up, map, ..ReadOptions::default() })
+    }
+}
+
+/// Which pairs of clips.
+#[derive(Args, Clone, Debug, Default)]
+pub struct Pairs {
+    /// A pair of clips of the same content: first the source manner, then the wanted one (may be repeated)
+    #[arg(long, num_args = 2, value_names = ["NEUTRAL", "STYLED"], action = clap::ArgAction::Append)]
+    pub pair: Vec<PathBuf>,
+    /// Table of pairs: tab-separated, with columns `neutral` and `styled` (paths from the table's folder)
+    #[arg(long, value_name = "TSV")]
+    pub pairs: Option<PathBuf>,
+    /// Rows of the table to take: COLUMN=VALUE, COLUMN!=VALUE, COLUMN~PART or COLUMN!~PART (may be repeated: all must hold)
+    #[arg(long = "where", value_name = "CONDITION", requires = "pairs")]
+    pub conditions: Vec<String>,
+}
+
+impl Pairs {
+    /// The pairs' paths.
+    pub fn paths(&self) -> miette::Result<Vec<(PathBuf, PathBuf)>> {
+        let mut paths: Vec<_> = self.pair.as_chunks::<2>().0.iter().map(|[a, b]| (a.clone(), b.clone())).collect();
+        if let Some(table) = &self.pairs {
+            paths.extend(self.rows_of(table)?);
+        }
+        if paths.is_empty() {
+            return Err(miette!(
+                help = "give --pair NEUTRAL STYLED, or --pairs TABLE.tsv --where style=NAME",
+                "there is no pair of clips"
+            ));
+        }
+        Ok(paths)
+    }
+
+    fn rows_of(&self, table: &Path) -> miette::Result<Vec<(PathBuf, PathBuf)>> {
+        let refuse = |error: csv::Error| miette!("{}: cannot be read: {error}", table.display());
+        let mut reader = csv::ReaderBuilder::new().delimiter(b'\t').quoting(false).from_path(table).map_err(refuse)?;
+        let headers = reader.headers().map_err(refuse)?.clone();
+        let column = |name: &str| {
+            headers.iter().position(|header| header == name).ok_or_else(|| {
+                let columns: Vec<_> = headers.iter().collect();
+                miette!(
+                    help = format!("its columns are: {}", columns.join(", ")),
+                    "{}: there is no column {name:?}",
+                    table.display()
+                )
+            })
+        };
+        let (neutral, styled) = (column("neutral")?, column("styled")?);
+        let conditions =
+            self.conditions.iter().map(|text| Condition::parse(text, &column)).collect::<Result<Vec<_>, _>>()?;
+        let folder = table.parent().unwrap_or(Path::new(""));
+        let mut pairs = Vec::new();
+        for record in reader.records() {
+            let record = record.map_err(refuse)?;
+            if conditions.iter().all(|condition| condition.holds(record.get(condition.column).unwrap_or(""))) {
+                let path = |column| folder.join(record.get(column).unwrap_or(""));
+                pairs.push((path(neutral), path(styled)));
+            }
+        }
+        if pairs.is_empty() {
+            return Err(miette!(
+                help = "loosen a --where condition",
+                "{}: no row fits {}",
+                table.display(),
+                self.conditions.join(" and ")
+            ));
+        }
+        Ok(pairs)
+    }
+}
+
+/// Clips named by files, folders and tables.
+///
+/// `walk.bvh`, `walks/` (every .bvh and .csv in it), `manifest.tsv` (its column `file`, paths from the table's folder), or
+/// `manifest.tsv:label=body-mechanics,skeleton=cmu31` (the rows that fulfil all conditions).
+pub fn clip_paths(sets: &[PathBuf]) -> miette::Result<Vec<PathBuf>> {
+    let mut paths: Vec<PathBuf> = Vec::new();
+    for set in sets {
+        let text = set.display().to_string();
+        let found = if set.is_dir() {
+            folder_clips(set)?
+        } else if let Some((table, conditions)) = text.split_once(".tsv") {
+            table_clips(Path::new(&format!("{table}.tsv")), conditions.strip_prefix(':').unwrap_or(conditions))?
+        } else {
+            vec![set.clone()]
+        };
+        for path in found {
+            if !paths.contains(&path) {
+                paths.push(path);
+            }
+        }
+    }
+    Ok(paths)
+}
+
+fn folder_clips(folder: &Path) -> miette::Result<Vec<PathBuf>> {
+    let refuse = |error: std::io::Error| miette!("{}: cannot be read: {error}", folder.display());
+    let mut paths = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(refuse)? {
+        let path = entry.map_err(refuse)?.path();
+        let is_clip = |e: &std::ffi::OsStr| e.eq_ignore_ascii_case("bvh") || e.eq_ignore_ascii_case("csv");
+        if path.extension().is_some_and(is_clip) {
+            paths.push(path);
+        }
+    }
+    if paths.is_empty() {
+        return Err(miette!(help = "name a folder with .bvh or .csv files", "{}: there is no clip", folder.display()));
+    }
+    paths.sort();
+    Ok(paths)
+}
+
+fn table_clips(table: &Path, conditions: &str) -> miette::Result<Vec<PathBuf>> {
+    let refuse = |error: csv::Error| miette!("{}: cannot be read: {error}", table.display());
+    let mut reader = csv::ReaderBuilder::new().delimiter(b'\t').quoting(false).from_path(table).map_err(refuse)?;
+    let headers = reader.headers().map_err(refuse)?.clone();
+    let column = |name: &str| {
+        headers.iter().position(|header| header == name).ok_or_else(|| {
+            let columns: Vec<_> = headers.iter().collect();
+            miette!(
+                help = format!("its columns are: {}", columns.join(", ")),
+                "{}: there is no column {name:?}",
+                table.display()
+            )
+        })
+    };
+    let file = column("file")?;
+    let parts = conditions.split(',').filter(|part| !part.is_empty());
+    let parsed = parts.map(|text| Condition::parse(text, &column)).collect::<miette::Result<Vec<_>>>()?;
+    let folder = table.parent().unwrap_or(Path::new(""));
+    let mut paths = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(refuse)?;
+        if parsed.iter().all(|condition| condition.holds(record.get(condition.column).unwrap_or(""))) {
+            paths.push(folder.join(record.get(file).unwrap_or("")));
+        }
+    }
+    if paths.is_empty() {
+        return Err(miette!(help = "loosen a condition", "{}: no row fits {conditions}", table.display()));
+    }
+    Ok(paths)
+}
+
+struct Condition {
+    column: usize,
+    operator: Operator,
+    value: String,
+}
+
+#[derive(Clone, Copy)]
+enum Operator {
+    Equal,
+    Different,
+    Contains,
+    Lacks,
+}
+
+impl Condition {
+    fn parse(text: &str, column: &dyn Fn(&str) -> miette::Result<usize>) -> miette::Result<Self> {
+        let operators =
+            [("!=", Operator::Different), ("!~", Operator::Lacks), ("=", Operator::Equal), ("~", Operator::Contains)];
+        let found = operators.into_iter().find_map(|(sign, operator)| {
+            text.split_once(sign).map(|(name, value)| (name.trim(), operator, value.trim()))
+        });
+        let Some((name, operator, value)) = found else {
+            return Err(miette!("condition {text}: expected COLUMN=VALUE, COLUMN!=VALUE, COLUMN~PART or COLUMN!~PART"));
+        };
+        Ok(Self { column: column(name)?, operator, value: value.to_owned() })
+    }
+
+    fn holds(&self, found: &str) -> bool {
+        match self.operator {
+            Operator::Equal => found == self.value,
+            Operator::Different => found != self.value,
+            Operator::Contains => found.contains(&self.value),
+            Operator::Lacks => !found.contains(&self.value),
+        }
+    }
+}

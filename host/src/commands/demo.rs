@@ -1,0 +1,197 @@
+//! `kinesic demo`.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use kinesic::{Pose, TranslatorState};
+use kinesic_host::clip::{Clip, JointMap};
+use kinesic_host::gait::{Manner, walk};
+use kinesic_host::pack::{PackFile, Provenance};
+use kinesic_host::rig::{MAX_JOINTS, Rig};
+use kinesic_host::translate::{
+    FormChoice, HostTranslator, NamedPair, TrainOptions, TrainPair, evaluate, plausible, train,
+};
+use miette::{IntoDiagnostic, miette};
+use serde::Serialize;
+
+use super::output::{command_line, print_json, spinner, write_whole};
+
+/// Show the whole way: make two manners of walking, learn the difference, pack it, play an unseen walk frame by frame
+///
+/// Writes the made walks, the pack and the translated walk to a folder.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  kinesic demo
+  kinesic demo --out /tmp/demo --seed 7")]
+pub struct Args {
+    /// Folder to write to; it is made if it is missing
+    #[arg(long, value_name = "FOLDER", default_value = "kinesic-demo")]
+    out: PathBuf,
+    /// Seed of the made walks
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Print the results as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+impl Default for Args {
+    fn default() -> Self {
+        Self { out: PathBuf::from("kinesic-demo"), seed: 1, json: false }
+    }
+}
+
+const FPS: f64 = 60.0;
+const SECONDS: f64 = 6.0;
+
+#[derive(Serialize)]
+struct Summary {
+    folder: String,
+    error_cm: f64,
+    identity_cm: f64,
+    offset_cm: f64,
+    affine_cm: f64,
+    floor_cm: f64,
+    pack_bytes: usize,
+    multiply_adds_per_frame: usize,
+    microseconds_per_frame: f64,
+    frames: usize,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> miette::Result<()> {
+    std::fs::create_dir_all(&args.out).map_err(|error| {
+        miette!(help = "choose another with --out FOLDER", "{}: cannot be made: {error}", args.out.display())
+    })?;
+    let bar = spinner();
+    bar.set_message("making walks and training");
+    // Same content, two manners; the unseen walk starts elsewhere in the stride and varies in another way.
+    let made = |manner: &Manner, phase: f64, seed: u64| {
+        let seconds = SECONDS * Manner::NEUTRAL.cadence / manner.cadence;
+        walk(manner, seconds, FPS, phase, args.seed.wrapping_mul(1000).wrapping_add(seed))
+    };
+    let (neutral, weary) = (made(&Manner::NEUTRAL, 0.0, 1), made(&Manner::WEARY, 0.0, 2));
+    let (unseen, expected, again) =
+        (made(&Manner::NEUTRAL, 0.3, 3), made(&Manner::WEARY, 0.3, 4), made(&Manner::WEARY, 0.3, 5));
+    let map = JointMap::detect(&neutral.skeleton).ok_or_else(|| miette!("the made skeleton is not known"))?;
+    let rig = Rig::new(&neutral.skeleton, &map).into_diagnostic()?;
+    let locals = |clip: &Clip| rig.locals(&rig.poses(clip));
+    let pair = TrainPair {
+        source_name: "neutral.bvh".into(),
+        target_name: "weary.bvh".into(),
+        source: locals(&neutral),
+        target: locals(&weary),
+    };
+    let options = TrainOptions { form: FormChoice::WholeBody, ..TrainOptions::default() };
+    let mut trained = train(&rig, &[pair], "weary", FPS, &options, &|_| {}).into_diagnostic()?;
+    let provenance = Provenance {
+        tool: format!("kinesic {}", env!("CARGO_PKG_VERSION")),
+        command: command_line(),
+        seed: args.seed,
+        notes: vec!["trained on made-up walks (kinesic demo)".to_owned()],
+        baselines: trained.baselines.clone(),
+        ..Provenance::default()
+    };
+    let preview = PackFile::from_bytes(&trained.model.pack(&rig, &provenance));
+    let (sources, targets) = ([rig.poses(&neutral)], [rig.poses(&weary)]);
+    trained.model.strength =
+        plausible(&preview.pack().into_diagnostic()?, &rig, &sources, &targets).into_diagnostic()?;
+    let bytes = trained.model.pack(&rig, &provenance);
+    let path = |name: &str| args.out.join(name);
+    write_whole(&path("weary.kin"), &bytes)?;
+
+    // From here on as a device would: the pack from disk, one pose in and one pose out a frame.
+    bar.set_message("playing an unseen walk through the device's code");
+    let file = PackFile::read(&path("weary.kin")).into_diagnostic()?;
+    let pack = file.pack().into_diagnostic()?;
+    let translator = HostTranslator::load(&pack).into_diagnostic()?;
+    let source = rig.poses(&unseen);
+    let (styled, microseconds) = play_timed(&translator, &source);
+    let report = evaluate(
+        &pack,
+        &rig,
+        &trained.baselines,
+        &[NamedPair { source: ("unseen", &unseen), target: ("expected", &expected) }],
+    )
+    .into_diagnostic()?;
+    let floor = floor(&rig, &again, &expected)?;
+    let clips: [(&str, &Clip); 4] =
+        [("neutral.bvh", &neutral), ("weary.bvh", &weary), ("unseen.bvh", &unseen), ("expected.bvh", &expected)];
+    for (name, clip) in clips {
+        clip.write_bvh(path(name)).into_diagnostic()?;
+    }
+    rig.clip(&styled, 1.0 / FPS).write_bvh(path("unseen-weary.bvh")).into_diagnostic()?;
+    bar.finish_and_clear();
+    let summary = Summary {
+        folder: args.out.display().to_string(),
+        error_cm: report.errors.error_cm,
+        identity_cm: report.errors.identity_cm,
+        offset_cm: report.errors.offset_cm,
+        affine_cm: report.errors.affine_cm,
+        floor_cm: floor,
+        pack_bytes: bytes.len(),
+        multiply_adds_per_frame: translator.multiply_adds(),
+        microseconds_per_frame: microseconds,
+        frames: source.len(),
+    };
+    if args.json {
+        print_json(&summary)
+    } else {
+        print(&summary, &args.out);
+        Ok(())
+    }
+}
+
+/// Plays frame by frame; time of a frame is the median of five passes.
+fn play_timed(translator: &HostTranslator, source: &[Pose<MAX_JOINTS>]) -> (Vec<Pose<MAX_JOINTS>>, f64) {
+    let mut styled = vec![Pose::identity(); source.len()];
+    let mut passes: Vec<f64> = (0..5)
+        .map(|_| {
+            let mut state = Box::new(TranslatorState::new());
+            translator.start(&mut state, &source[0]);
+            let begin = Instant::now();
+            for (pose, out) in source.iter().zip(&mut styled) {
+                translator.step(&mut state, pose, out);
+            }
+            begin.elapsed().as_secs_f64() * 1e6 / source.len() as f64
+        })
+        .collect();
+    passes.sort_by(f64::total_cmp);
+    (styled, passes[2])
+}
+
+/// Two takes of the same manner: no translation can be expected to come nearer.
+fn floor(rig: &Rig, a: &Clip, b: &Clip) -> miette::Result<f64> {
+    use kinesic_host::align::{Series, aligned_rms};
+    let (a, b) = (rig.locals(&rig.poses(a)), rig.locals(&rig.poses(b)));
+    let series = |l| Series::new(l, 3 * rig.joints()).into_diagnostic();
+    Ok(100.0 * aligned_rms(series(&a.positions)?, series(&b.positions)?).into_diagnostic()?)
+}
+
+fn print(s: &Summary, folder: &Path) {
+    println!("A walk that was not in the training, translated to a weary one.");
+    println!("Aligned RMS joint distance to the weary walk that belongs to it, cm:");
+    println!("  doing nothing            {:6.2}", s.identity_cm);
+    println!("  mean offset              {:6.2}", s.offset_cm);
+    println!("  affine map a joint       {:6.2}", s.affine_cm);
+    println!("  kinesic                  {:6.2}", s.error_cm);
+    println!("  another take (floor)     {:6.2}", s.floor_cm);
+    println!("Pack                       {:6} bytes", s.pack_bytes);
+    println!("Multiply-adds a frame      {:6} and kinematics", s.multiply_adds_per_frame);
+    println!(
+        "Time a frame on this host  {:6.1} us ({} frames, median of 5 passes)",
+        s.microseconds_per_frame, s.frames
+    );
+    println!();
+    println!("Written to {}:", folder.display());
+    println!("  neutral.bvh, weary.bvh   the training pair");
+    println!("  weary.kin                the pack");
+    println!("  unseen.bvh               a walk that was not in the training");
+    println!("  unseen-weary.bvh         the same, translated");
+    println!("  expected.bvh             the weary walk that belongs to it");
+    println!(
+        "Next: kinesic inspect {0}/unseen-weary.bvh, or kinesic apply {0}/weary.kin YOUR.bvh --out out.bvh",
+        folder.display()
+    );
+}

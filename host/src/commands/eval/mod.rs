@@ -1,0 +1,24 @@
+//! `kinesic eval`: one file an engine.
+
+mod components;
+mod mechanics;
+mod translate;
+
+use clap::Subcommand;
+
+/// Measure a pack on clips
+#[derive(Debug, Subcommand)]
+pub enum Engine {
+    Translate(translate::Args),
+    Mechanics(mechanics::Args),
+    Components(components::Args),
+}
+
+/// Runs the command.
+pub fn run(engine: &Engine) -> miette::Result<()> {
+    match engine {
+        Engine::Translate(args) => translate::run(args),
+        Engine::Mechanics(args) => mechanics::run(args),
+        Engine::Components(args) => components::run(args),
+    }
+}

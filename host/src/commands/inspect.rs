@@ -1,0 +1,239 @@
+//! `kinesic inspect`.
+
+use std::path::{Path, PathBuf};
+
+use kinesic::Pack;
+use kinesic::model::{JointMeta, MAGIC, ModelMeta};
+use kinesic_host::clip::{self, JointMap};
+use kinesic_host::components::HostComponents;
+use kinesic_host::mechanics::HostMechanics;
+use kinesic_host::pack::{PackFile, Provenance};
+use kinesic_host::rig::Rig;
+use kinesic_host::translate::HostTranslator;
+use miette::IntoDiagnostic;
+use serde::Serialize;
+use serde_json::json;
+
+use super::clips::Reading;
+use super::output::print_json;
+
+/// Say what a clip or a pack holds, and what is wrong with it
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  kinesic inspect walk.bvh
+  kinesic inspect angry.kin --json
+  kinesic inspect mine.bvh --map my-skeleton.toml
+
+A skeleton map names the joints of a skeleton that is not known (canonical name = name in the file):
+  units = \"cm\"
+  [joints]
+  pelvis = \"Root Bone\"
+  l_hip = \"thigh.L\"
+  r_hip = \"thigh.R\"
+Canonical names: pelvis spine chest neck head, and with l_ or r_: collar shoulder elbow wrist hip knee ankle toe")]
+pub struct Args {
+    /// A clip (BVH, Kinect CSV) or a pack (.kin)
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    reading: Reading,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> miette::Result<()> {
+    if is_pack(&args.file) { pack(&args.file, args.json) } else { clip(args) }
+}
+
+/// By name, or by content: a damaged pack should be refused as a pack.
+fn is_pack(path: &Path) -> bool {
+    let starts = || {
+        let mut head = [0; 4];
+        let read = std::fs::File::open(path).and_then(|mut file| std::io::Read::read_exact(&mut file, &mut head));
+        read.is_ok() && head == MAGIC
+    };
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("kin")) || starts()
+}
+
+#[derive(Serialize)]
+struct ClipReport {
+    file: String,
+    #[serde(flatten)]
+    summary: clip::Summary,
+    joint_names: Vec<String>,
+    canonical: Vec<(&'static str, String)>,
+}
+
+fn clip(args: &Args) -> miette::Result<()> {
+    let options = args.reading.options()?;
+    let clip = clip::read_with(&args.file, &options).into_diagnostic()?;
+    let map = match &options.map {
+        Some(map) => Some(map.resolve(&clip.skeleton).into_diagnostic()?),
+        None => JointMap::detect(&clip.skeleton),
+    };
+    let name = |joint: usize| clip.skeleton.joints[joint].name.clone();
+    let known = |map: &JointMap| {
+        let joint = |c: clip::Canonical| Some((c.name(), name(map.joint(c)?)));
+        clip::Canonical::ALL.into_iter().filter_map(joint).collect()
+    };
+    let report = ClipReport {
+        file: args.file.display().to_string(),
+        summary: clip.summary(),
+        joint_names: (0..clip.skeleton.len()).map(name).collect(),
+        canonical: map.as_ref().map(known).unwrap_or_default(),
+    };
+    if args.json {
+        return print_json(&report);
+    }
+    let s = &report.summary;
+    println!("{}: {} frames at {:.4} a second, {:.2} s", report.file, s.frames, s.fps, s.duration_s);
+    let layout = map.as_ref().map_or("unknown names: give a skeleton map with --map (see --help)", JointMap::layout);
+    println!("skeleton   {} joints, {layout}, about {:.2} m from pelvis chain and legs", s.joints, s.height_m);
+    println!("height     joints between {:.2} m and {:.2} m", s.vertical_m[0], s.vertical_m[1]);
+    println!("joints     {}", report.joint_names.join(", "));
+    for note in &s.notes {
+        println!("note: {note}");
+    }
+    Ok(())
+}
+
+#[derive(Serialize)]
+struct PackReport {
+    file: String,
+    kind: String,
+    name: String,
+    frame_rate: f32,
+    bytes: usize,
+    tensor_bytes: usize,
+    joints: Vec<String>,
+    models: Vec<ModelReport>,
+    tensors: Vec<(String, String, [u32; 2])>,
+    provenance: Option<Provenance>,
+}
+
+/// A model, checked by loading it as the device would, and its figures by name.
+#[derive(Serialize)]
+struct ModelReport {
+    engine: &'static str,
+    #[serde(flatten)]
+    figures: serde_json::Map<String, serde_json::Value>,
+}
+
+fn model(pack: &Pack, meta: &ModelMeta, joints: usize) -> miette::Result<ModelReport> {
+    let (engine, figures) = match meta {
+        ModelMeta::Translator(meta) => {
+            let translator = HostTranslator::load(pack).into_diagnostic()?;
+            let states = (2 * meta.blocks + meta.drives) as usize;
+            let figures = json!({
+                "style": meta.style,
+                "form": format!("{:?}", meta.form),
+                "filter_states": 2 * meta.blocks,
+                "drives": meta.drives,
+                "multiply_adds_per_frame_before_kinematics": translator.multiply_adds(),
+                "capacity": format!("Translator::<{joints}, {states}>"),
+                "state_bytes": translator_state_bytes(joints, states),
+                "plausible_strength": meta.strength,
+            });
+            ("translator", figures)
+        }
+        ModelMeta::Mechanics(meta) => {
+            let mechanics = HostMechanics::load(pack).into_diagnostic()?;
+            let figures = json!({
+                "hidden": meta.hidden,
+                "code": meta.code,
+                "body_height_m": meta.body_height,
+                "hip_height_m": meta.hip_height,
+                "multiply_adds_per_frame_before_kinematics": mechanics.multiply_adds(),
+            });
+            ("mechanics", figures)
+        }
+        ModelMeta::Components(meta) => {
+            let components = HostComponents::load(pack).into_diagnostic()?;
+            let figures = json!({
+                "style": meta.style,
+                "components": meta.count,
+                "stored_frames": meta.frames,
+                "multiply_adds_per_frame_before_kinematics": components.multiply_adds(),
+                "plausible_strength": meta.strength,
+            });
+            ("components", figures)
+        }
+    };
+    let serde_json::Value::Object(figures) = figures else { unreachable!("json! of braces is an object") };
+    Ok(ModelReport { engine, figures })
+}
+
+fn pack(path: &Path, json: bool) -> miette::Result<()> {
+    let file = PackFile::read(path).into_diagnostic()?;
+    let pack = file.pack().into_diagnostic()?;
+    let metadata = pack.metadata();
+    Rig::from_pack(&pack).into_diagnostic()?;
+    let joints: Vec<JointMeta> = metadata.joints.iter().collect();
+    let models = metadata.models.iter().map(|meta| model(&pack, &meta, joints.len())).collect::<Result<_, _>>()?;
+    let report = PackReport {
+        file: path.display().to_string(),
+        kind: format!("{:?}", pack.kind()),
+        name: metadata.name.to_owned(),
+        frame_rate: metadata.frame_rate,
+        bytes: file.bytes().len(),
+        tensor_bytes: pack.payload_len(),
+        joints: joints.iter().map(|joint| joint.name.to_owned()).collect(),
+        models,
+        tensors: metadata.tensors.iter().map(|t| (t.name.to_owned(), format!("{:?}", t.kind), t.shape)).collect(),
+        provenance: file.provenance(),
+    };
+    if json {
+        return print_json(&report);
+    }
+    println!("{}: {} pack {:?}, format 1, checksum correct", report.file, report.kind, report.name);
+    println!("rate       {} frames a second", report.frame_rate);
+    println!("size       {} bytes, of which {} are tensors, used in place", report.bytes, report.tensor_bytes);
+    println!("joints     {}: {}", joints.len(), report.joints.join(", "));
+    for m in &report.models {
+        println!("model      {}", m.engine);
+        for (name, value) in &m.figures {
+            println!(
+                "           {:<42} {}",
+                name.replace('_', " "),
+                value.as_str().map_or(value.to_string(), str::to_owned)
+            );
+        }
+    }
+    println!("tensors");
+    for (name, kind, [rows, columns]) in &report.tensors {
+        println!("           {name:<28} {kind} {rows} x {columns}");
+    }
+    if let Some(provenance) = &report.provenance {
+        println!("made by    {} with: {}", provenance.tool, provenance.command);
+        for input in &provenance.inputs {
+            println!("trained on {} (sha256 {})", input.path, &input.sha256[..16.min(input.sha256.len())]);
+        }
+        for metric in &provenance.metrics {
+            println!("           {:<24} {:.2}", metric.name, metric.value);
+        }
+        for note in &provenance.notes {
+            println!("note: {note}");
+        }
+    }
+    Ok(())
+}
+
+/// `size_of::<TranslatorState<JOINTS, STATES>>()`, whose parameters are known only now.
+fn translator_state_bytes(joints: usize, states: usize) -> usize {
+    // Filters, mask and strength; heading, drift and the last root with its flag.
+    4 * (states + joints + 1) + 4 * (2 + 3 + 4)
+}
+
+#[cfg(test)]
+mod tests {
+    use kinesic::TranslatorState;
+
+    #[test]
+    fn state_bytes_are_the_type_s() {
+        assert_eq!(super::translator_state_bytes(31, 48), size_of::<TranslatorState<31, 48>>());
+        assert_eq!(super::translator_state_bytes(25, 1000), size_of::<TranslatorState<25, 1000>>());
+    }
+}

@@ -1,0 +1,90 @@
+//! `kinesic mix`.
+
+use std::path::PathBuf;
+
+use kinesic_host::mechanics::mix;
+use serde::Serialize;
+
+use super::clips::Reading;
+use super::expression::{Body, outputs};
+use super::output::{print_json, spinner};
+
+/// Perform one motion's mechanics with another's expression
+///
+/// Path and hips are those of the mechanics clip; the result lasts as long as the shorter of the two.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  kinesic mix models/mechanics.kin --mechanics walk.bvh --expressive angry-talk.bvh --out walk-and-talk.bvh
+  kinesic mix models/mechanics.kin --mechanics jump.bvh --expressive signal.bvh --mask LHipJoint+=0 --mask RHipJoint+=0 \\
+      --out jump-signal.bvh")]
+pub struct Args {
+    /// Body-mechanics pack
+    #[arg(value_name = "PACK.kin")]
+    pack: PathBuf,
+    /// Clip whose mechanics are taken
+    #[arg(long, value_name = "CLIP")]
+    mechanics: PathBuf,
+    /// Clip whose expression is taken
+    #[arg(long, value_name = "CLIP")]
+    expressive: PathBuf,
+    /// Where the mechanics begin in their clip, s
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
+    mechanics_start: f64,
+    /// Where the expression begins in its clip, s
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
+    expressive_start: f64,
+    /// Expression: 0 = none, 1 = as it is
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
+    amount: f32,
+    /// Weight of a joint, JOINT=WEIGHT, or of all from it downwards, JOINT+=WEIGHT: 0 leaves it as in the mechanics clip (may
+    /// be repeated)
+    #[arg(long, value_name = "JOINT=WEIGHT")]
+    mask: Vec<String>,
+    /// BVH to write
+    #[arg(long, value_name = "FILE.bvh")]
+    out: PathBuf,
+    /// Random seed; mixing makes no random choice
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Print one JSON object: out, frames
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    reading: Reading,
+}
+
+#[derive(Serialize)]
+struct Summary {
+    out: String,
+    frames: usize,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> miette::Result<()> {
+    outputs(&[&args.out])?;
+    let bar = spinner();
+    bar.set_message("mixing");
+    let body = Body::read(&args.pack)?;
+    let modulation = body.modulation(args.amount, &args.mask)?;
+    let mechanics = body.decouple(&args.mechanics, &args.reading)?;
+    let expressive = body.decouple(&args.expressive, &args.reading)?;
+    let skip = |seconds: f64| (seconds.max(0.0) * body.fps).round() as usize;
+    let rest_of = |parts: &[_], seconds: f64, name: &str| {
+        let rest = parts.get(skip(seconds)..).filter(|rest| !rest.is_empty()).map(<[_]>::to_vec);
+        rest.ok_or_else(|| {
+            miette::miette!("{name}: it has {:.2} s, {seconds} s is past its end", parts.len() as f64 / body.fps)
+        })
+    };
+    let a = rest_of(&mechanics.parts, args.mechanics_start, &mechanics.name)?;
+    let b = rest_of(&expressive.parts, args.expressive_start, &expressive.name)?;
+    let mixed = mix(&a, &b, &modulation);
+    body.write(&mixed, &args.out)?;
+    bar.finish_and_clear();
+    let summary = Summary { out: args.out.display().to_string(), frames: mixed.len() };
+    if args.json {
+        return print_json(&summary);
+    }
+    println!("{}: {} frames", summary.out, summary.frames);
+    Ok(())
+}

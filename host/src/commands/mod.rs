@@ -1,0 +1,65 @@
+//! The subcommands. Each file reads its arguments, calls the library and prints.
+
+mod apply;
+mod blend;
+mod clips;
+mod decouple;
+mod demo;
+mod eval;
+mod expression;
+mod inspect;
+mod mask;
+mod mix;
+mod modulate;
+mod output;
+mod train;
+
+use clap::{Parser, Subcommand};
+
+/// Learn how a motion is performed on a workstation; perform it frame by frame on a microcontroller.
+///
+/// Without a subcommand the demo runs: two made-up manners of walking, a trained translator, and a walk that it has not seen.
+#[derive(Debug, Parser)]
+#[command(name = "kinesic", version, after_help = EXAMPLES)]
+pub struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  kinesic demo
+  kinesic inspect walk.bvh
+  kinesic train translate --pair neutral.bvh angry.bvh --out angry.kin
+  kinesic apply angry.kin walk.bvh --out angry-walk.bvh --strength 0.8 --mask Head=0
+  kinesic eval translate angry.kin --pair neutral2.bvh angry2.bvh";
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Demo(demo::Args),
+    Inspect(inspect::Args),
+    #[command(subcommand)]
+    Train(train::Engine),
+    Apply(apply::Args),
+    #[command(subcommand)]
+    Eval(eval::Engine),
+    Decouple(decouple::Args),
+    Modulate(modulate::Args),
+    Mix(mix::Args),
+    Blend(blend::Args),
+}
+
+/// Runs a command line.
+pub fn run(cli: Cli) -> miette::Result<()> {
+    match cli.command.unwrap_or_else(|| Command::Demo(demo::Args::default())) {
+        Command::Demo(args) => demo::run(&args),
+        Command::Inspect(args) => inspect::run(&args),
+        Command::Train(engine) => train::run(&engine),
+        Command::Apply(args) => apply::run(&args),
+        Command::Eval(engine) => eval::run(&engine),
+        Command::Decouple(args) => decouple::run(&args),
+        Command::Modulate(args) => modulate::run(&args),
+        Command::Mix(args) => mix::run(&args),
+        Command::Blend(args) => blend::run(&args),
+    }
+}

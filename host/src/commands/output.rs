@@ -1,0 +1,69 @@
+//! What the commands share on the way out: whole files, JSON, progress.
+
+use std::io::IsTerminal;
+use std::path::Path;
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use kinesic_host::files;
+use miette::{IntoDiagnostic, WrapErr, miette};
+use serde::Serialize;
+
+/// Writes a file whole or not at all.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> miette::Result<()> {
+    files::write_whole(path, bytes).map_err(|error| {
+        miette!(
+            help = "check that the folder exists and may be written to",
+            "{}: cannot be written: {error}",
+            path.display()
+        )
+    })
+}
+
+/// Refuses an output path before long work: wrong extension, or a folder that is not there.
+pub fn check_output(path: &Path, extension: &str) -> miette::Result<()> {
+    if path.extension().is_none_or(|found| !found.eq_ignore_ascii_case(extension)) {
+        return Err(miette!(
+            help = format!("name it {}", path.with_extension(extension).display()),
+            "{}: the output is a .{extension} file",
+            path.display()
+        ));
+    }
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if !folder.is_dir() {
+        return Err(miette!(
+            help = format!("create it: mkdir -p {}", folder.display()),
+            "{}: the folder {} does not exist",
+            path.display(),
+            folder.display()
+        ));
+    }
+    Ok(())
+}
+
+/// Prints one JSON object.
+pub fn print_json(value: &impl Serialize) -> miette::Result<()> {
+    let text = serde_json::to_string_pretty(value).into_diagnostic().wrap_err("cannot write JSON")?;
+    println!("{text}");
+    Ok(())
+}
+
+/// A spinner on standard error, silent where nobody watches.
+pub fn spinner() -> ProgressBar {
+    if !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new_spinner();
+    bar.set_style(
+        ProgressStyle::with_template("{spinner} {msg} ({elapsed})")
+            .unwrap_or_else(|_| ProgressStyle::default_spinner()),
+    );
+    bar.enable_steady_tick(Duration::from_millis(100));
+    bar
+}
+
+/// The command line as given, for the provenance.
+pub fn command_line() -> String {
+    let quoted = |arg: String| if arg.contains(' ') { format!("'{arg}'") } else { arg };
+    std::iter::once("kinesic".to_owned()).chain(std::env::args().skip(1).map(quoted)).collect::<Vec<_>>().join(" ")
+}

@@ -1,0 +1,242 @@
+//! `kinesic train components`.
+
+use std::path::{Path, PathBuf};
+
+use kinesic_host::components::{
+    FRAME_RATE, Optimiser, RECORDED, Report, Sparsity, TradeOff, TrainOptions, Trained, Weights, evaluate, trade_off,
+    train,
+};
+use kinesic_host::pack::{Metric, PackFile, Provenance};
+use kinesic_host::prepare::{Source, fingerprint};
+use miette::{IntoDiagnostic, WrapErr};
+use serde::Serialize;
+
+use crate::commands::clips::Reading;
+use crate::commands::output::{check_output, command_line, print_json, spinner, write_whole};
+
+/// Style weights of the trade-off curve.
+const CURVE: [f64; 8] = [0.0, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0];
+
+/// Learn style components: the content's motion made of the style's basic motions
+///
+/// Two clips are enough, and they need not show the same content. Both are put on the content's skeleton at 60 frames a
+/// second and factorised into sparse components; new components are learned that stay near the content's and share the
+/// style's Gram matrix. The pack plays the restyled content clip (`apply --stored`) and restyles live poses (`apply`).
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  kinesic train components --content walk.bvh --style old.bvh --out old.kin
+  kinesic train components --content bow.bvh --style angry.bvh -k 30 --style-weight 0.1 --smooth 1 --out angry.kin
+  kinesic train components --content bow.bvh --style sad.bvh --curve --json --out sad.kin")]
+pub struct Args {
+    /// Clip whose motion is kept
+    #[arg(long, value_name = "CLIP")]
+    content: PathBuf,
+    /// Clip whose manner is learned
+    #[arg(long, value_name = "CLIP")]
+    style: PathBuf,
+    /// Pack to write
+    #[arg(long, value_name = "FILE.kin")]
+    out: PathBuf,
+    /// Name of the style (default: the pack's file name)
+    #[arg(long, value_name = "NAME")]
+    name: Option<String>,
+    /// Number of components, or auto: as many as make the clip visibly better
+    #[arg(short = 'k', long = "components", value_name = "K", default_value = "auto", value_parser = count)]
+    count: Count,
+    /// Weight of the group norm: how much of a deviation a joint must move to be in a component
+    #[arg(long, value_name = "L", default_value_t = 0.01)]
+    sparsity: f64,
+    /// Share of joint groups to keep, 0 to 1; 1 keeps all that --sparsity leaves
+    #[arg(long, value_name = "SHARE", default_value_t = 0.15)]
+    density: f64,
+    /// Weight of staying like the content
+    #[arg(long, value_name = "C", default_value_t = 1.0)]
+    content_weight: f64,
+    /// Weight of the style's Gram matrix; see --curve
+    #[arg(long, value_name = "S", default_value_t = 0.01)]
+    style_weight: f64,
+    /// Weight of keeping the length of bones while learning (the device restores them in any case)
+    #[arg(long, value_name = "W", default_value_t = 10.0)]
+    bone_weight: f64,
+    /// Weight of velocities and accelerations like the content's; 1 is a good start against jerky results
+    #[arg(long, value_name = "W", default_value_t = 0.0)]
+    smooth: f64,
+    /// How much of the difference of the mean poses is style: 0 (the paper) keeps the content's posture
+    #[arg(long, value_name = "SHARE", default_value_t = 1.0)]
+    posture: f64,
+    /// Also show what eight style weights lead to
+    #[arg(long)]
+    curve: bool,
+    /// Seed of the noise that learning starts from
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Print the results as one JSON object
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    reading: Reading,
+}
+
+/// Number of components as given.
+#[derive(Clone, Copy, Debug)]
+enum Count {
+    Auto,
+    Given(usize),
+}
+
+fn count(text: &str) -> Result<Count, String> {
+    match text.parse() {
+        _ if text == "auto" => Ok(Count::Auto),
+        Ok(count) if count > 0 => Ok(Count::Given(count)),
+        _ => Err("expected auto or a number from 1 up".to_owned()),
+    }
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> miette::Result<()> {
+    check_output(&args.out, "kin")?;
+    let reading = args.reading.options()?;
+    let bar = spinner();
+    bar.set_message("reading the clips");
+    let read = |path: &Path| Source::read(path, &reading).into_diagnostic();
+    let (content, style) = (read(&args.content)?, read(&args.style)?);
+    let rig = content.rig().into_diagnostic()?;
+    let on_rig = |source: &Source| source.on_rig(&rig, FRAME_RATE).into_diagnostic();
+    let (content, style) = (on_rig(&content)?, on_rig(&style)?);
+    bar.set_message("factorising and learning");
+    let options = args.options();
+    let name = args.name.clone().unwrap_or_else(|| file_stem(&args.out));
+    let trained = train(&rig, &content, &style, &name, &options).into_diagnostic()?;
+    let curve = if args.curve { trade_off(&rig, &trained, &options, &CURVE) } else { Vec::new() };
+
+    let mut provenance = Provenance {
+        tool: format!("kinesic {}", env!("CARGO_PKG_VERSION")),
+        command: command_line(),
+        seed: args.seed,
+        inputs: [&args.content, &args.style]
+            .into_iter()
+            .map(|path| fingerprint(path).into_diagnostic().wrap_err_with(|| path.display().to_string()))
+            .collect::<Result<_, _>>()?,
+        metrics: recorded(&trained),
+        notes: vec![trained.choice.reason.clone()],
+        ..Provenance::default()
+    };
+    let preview = PackFile::from_bytes(&trained.model.pack(&rig, &provenance));
+    let report = evaluate(&preview.pack().into_diagnostic()?, &rig, &provenance.metrics).into_diagnostic()?;
+    provenance.metrics.extend(measured(&report));
+    let bytes = trained.model.pack(&rig, &provenance);
+    write_whole(&args.out, &bytes)?;
+    bar.finish_and_clear();
+    let summary = Summary {
+        pack: args.out.display().to_string(),
+        bytes: bytes.len(),
+        frame_rate: FRAME_RATE,
+        components: trained.choice.count,
+        reason: &trained.choice.reason,
+        steps: trained.learned.history.len() - 1,
+        objective: trained.learned.history.last().copied().unwrap_or_default(),
+        strength: trained.model.strength,
+        curve: &curve,
+        training: &report,
+    };
+    if args.json {
+        print_json(&summary)
+    } else {
+        print(&summary);
+        Ok(())
+    }
+}
+
+impl Args {
+    fn options(&self) -> TrainOptions {
+        TrainOptions {
+            count: match self.count {
+                Count::Auto => None,
+                Count::Given(count) => Some(count),
+            },
+            sparsity: Sparsity {
+                penalty: self.sparsity,
+                density: (self.density < 1.0).then_some(self.density),
+                ..Sparsity::default()
+            },
+            weights: Weights {
+                content: self.content_weight,
+                style: self.style_weight,
+                bones: self.bone_weight,
+                smooth: self.smooth,
+            },
+            optimiser: Optimiser { seed: self.seed, ..Optimiser::default() },
+            posture: self.posture,
+        }
+    }
+}
+
+fn file_stem(path: &Path) -> String {
+    path.file_stem().map_or_else(|| "style".to_owned(), |stem| stem.to_string_lossy().into_owned())
+}
+
+fn metric(name: &str, value: f64) -> Metric {
+    Metric { name: name.to_owned(), value }
+}
+
+fn recorded(trained: &Trained) -> Vec<Metric> {
+    vec![metric(RECORDED[0], trained.reconstruction_error), metric(RECORDED[1], trained.style_distance)]
+}
+
+fn measured(report: &Report) -> Vec<Metric> {
+    vec![
+        metric("density", report.density),
+        metric("content_distance", report.content_distance),
+        metric("bone_error_max_percent", report.bone_error_max_percent),
+        metric("jerk_ratio", report.jerk_ratio),
+    ]
+}
+
+#[derive(Serialize)]
+struct Summary<'a> {
+    pack: String,
+    bytes: usize,
+    frame_rate: f64,
+    components: usize,
+    reason: &'a str,
+    steps: usize,
+    objective: f64,
+    strength: [f64; 2],
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    curve: &'a [TradeOff],
+    training: &'a Report,
+}
+
+fn print(summary: &Summary) {
+    let report = summary.training;
+    println!("components     {:>8}  {}", summary.components, summary.reason);
+    println!(
+        "reconstruction {:8.4}  relative error, with {:.0} % of the joint groups",
+        report.reconstruction_error,
+        100.0 * report.density
+    );
+    println!("learning       {:8}  steps", summary.steps);
+    println!(
+        "style distance {:8.3}  content distance {:.3} (both relative)",
+        report.style_distance, report.content_distance
+    );
+    println!(
+        "bones          {:8.2}  % largest error as composed, {:.4} % restored",
+        report.composed_bone_error_max_percent, report.bone_error_max_percent
+    );
+    println!("jerk           {:8.2}  times the content's", report.jerk_ratio);
+    if !summary.curve.is_empty() {
+        println!("style weight   style distance   content distance   mean bone error, %");
+        for point in summary.curve {
+            println!(
+                "{:12}   {:14.3}   {:16.3}   {:18.3}",
+                point.style_weight, point.style_distance, point.content_distance, point.bone_error_mean_percent
+            );
+        }
+    }
+    println!(
+        "{}: {} bytes, {} frames a second, strengths up to {}",
+        summary.pack, summary.bytes, summary.frame_rate, summary.strength[1]
+    );
+}

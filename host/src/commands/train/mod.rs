@@ -1,0 +1,24 @@
+//! `kinesic train`: one file an engine.
+
+mod components;
+mod mechanics;
+mod translate;
+
+use clap::Subcommand;
+
+/// Train a model from clips and pack it
+#[derive(Debug, Subcommand)]
+pub enum Engine {
+    Translate(translate::Args),
+    Mechanics(mechanics::Args),
+    Components(components::Args),
+}
+
+/// Runs the command.
+pub fn run(engine: &Engine) -> miette::Result<()> {
+    match engine {
+        Engine::Translate(args) => translate::run(args),
+        Engine::Mechanics(args) => mechanics::run(args),
+        Engine::Components(args) => components::run(args),
+    }
+}

@@ -1,0 +1,314 @@
+//! `kinesic train translate`.
+
+use std::path::PathBuf;
+
+use clap::ValueEnum;
+use kinesic_host::clip::Clip;
+use kinesic_host::pack::{Metric, PackFile, Provenance};
+use kinesic_host::prepare::{Source, common_rate, fingerprint};
+use kinesic_host::translate::{
+    AFFINE, Alignment, Base, Candidate, FormChoice, NamedPair, Poles, Report, Stage, TrainOptions, TrainPair, Trained,
+    evaluate, plausible, train,
+};
+use miette::{IntoDiagnostic, WrapErr};
+use serde::Serialize;
+
+use crate::commands::clips::{Pairs, Reading};
+use crate::commands::output::{check_output, command_line, print_json, spinner, write_whole};
+
+/// Learn to translate one manner of moving into another, from pairs of clips
+///
+/// The clips of a pair show the same content in two manners; their timing may differ. Form, order and penalties are chosen by
+/// cross-validation within the training pairs.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  kinesic train translate --pair neutral.bvh angry.bvh --out angry.kin
+  kinesic train translate --pairs pairs.tsv --where style=child --where 'neutral!~p734' --out child.kin
+  kinesic train translate --pair my.bvh mine-sad.bvh --map my-skeleton.toml --form per-joint --order 40 --out sad.kin")]
+pub struct Args {
+    #[command(flatten)]
+    pairs: Pairs,
+    /// Pack to write
+    #[arg(long, value_name = "FILE.kin")]
+    out: PathBuf,
+    /// Name of the style (default: the pack's file name)
+    #[arg(long, value_name = "NAME")]
+    style: Option<String>,
+    /// Largest order: states of each joint's model, or of the shared one (default: 40 a joint, 64 shared)
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(2..=512))]
+    order: Option<u16>,
+    /// One model a joint (Dong 2018), one for the whole body (Hsu 2005), or the better of the two
+    #[arg(long, value_enum, default_value_t = Form::Auto)]
+    form: Form,
+    /// How the clips of a pair are brought together
+    #[arg(long, value_enum, default_value_t = Align::Auto)]
+    align: Align,
+    /// Train on left-right mirrored copies too
+    #[arg(long, value_enum, default_value_t = Mirror::Auto)]
+    mirror: Mirror,
+    /// Frames per second of the pack (default: that of the slowest clip, at most 60)
+    #[arg(long, value_name = "RATE", allow_negative_numbers = true)]
+    fps: Option<f64>,
+    /// Seed of random choices; recorded in the pack (this trainer makes none)
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Print the results as one JSON object
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    reading: Reading,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Form {
+    /// The smaller validation error decides
+    Auto,
+    /// 3 inputs and 3 outputs a joint
+    PerJoint,
+    /// Principal coordinates in, all joints out
+    WholeBody,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Align {
+    /// The way with the smallest error on the training pairs
+    Auto,
+    /// Iterative motion warping of the positions, first frame to first, last to last
+    Warp,
+    /// Evenly from beginning to end
+    Uniform,
+    /// By the phase of the limbs, in step; clips that start on different feet overlap in part. Best for masks and live use
+    InStep,
+    /// By the phase of the limbs, left answering right: for clips that start on different feet
+    Opposite,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Mirror {
+    /// If it lowers the validation error
+    Auto,
+    /// Always
+    On,
+    /// Never
+    Off,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> miette::Result<()> {
+    check_output(&args.out, "kin")?;
+    let paths = args.pairs.paths()?;
+    let options = args.reading.options()?;
+    let bar = spinner();
+    bar.set_message(format!("reading {} clips", 2 * paths.len()));
+    let read = |path: &PathBuf| Source::read(path, &options).into_diagnostic();
+    let sources =
+        paths.iter().map(|(a, b)| Ok((read(a)?, read(b)?))).collect::<miette::Result<Vec<(Source, Source)>>>()?;
+    let fps = args.fps.unwrap_or_else(|| common_rate(sources.iter().flat_map(|(a, b)| [&a.clip, &b.clip])));
+    let rig = sources[0].0.rig().into_diagnostic()?;
+    let on_rig = |source: &Source| source.on_rig(&rig, fps).into_diagnostic();
+    let mut pairs = Vec::new();
+    let mut clips = Vec::new();
+    for (source, target) in &sources {
+        let (neutral, styled) = (on_rig(source)?, on_rig(target)?);
+        pairs.push(TrainPair {
+            source_name: source.name(),
+            target_name: target.name(),
+            source: rig.locals(&rig.poses(&neutral)),
+            target: rig.locals(&rig.poses(&styled)),
+        });
+        clips.push((neutral, styled));
+    }
+    let style = args.style.clone().unwrap_or_else(|| file_stem(&args.out));
+    let mut trained = train(&rig, &pairs, &style, fps, &args.options(), &|stage| {
+        bar.set_message(match stage {
+            Stage::Align => "aligning the clips",
+            Stage::Validate => "comparing forms, orders and penalties",
+            Stage::Fit => "fitting",
+        });
+    })
+    .into_diagnostic()?;
+
+    let named: Vec<NamedPair> = pairs
+        .iter()
+        .zip(&clips)
+        .map(|(pair, (neutral, styled))| NamedPair {
+            source: (&pair.source_name, neutral),
+            target: (&pair.target_name, styled),
+        })
+        .collect();
+    let mut provenance = Provenance {
+        tool: format!("kinesic {}", env!("CARGO_PKG_VERSION")),
+        command: command_line(),
+        seed: args.seed,
+        inputs: paths
+            .iter()
+            .flat_map(|(a, b)| [a, b])
+            .map(|path| fingerprint(path).into_diagnostic().wrap_err_with(|| path.display().to_string()))
+            .collect::<Result<_, _>>()?,
+        metrics: Vec::new(),
+        notes: notes(&trained),
+        baselines: trained.baselines.clone(),
+    };
+    let poses = |clips: &mut dyn Iterator<Item = &Clip>| clips.map(|clip| rig.poses(clip)).collect::<Vec<_>>();
+    let preview = PackFile::from_bytes(&trained.model.pack(&rig, &provenance));
+    let sources = poses(&mut clips.iter().map(|(neutral, _)| neutral));
+    let targets = poses(&mut clips.iter().map(|(_, styled)| styled));
+    trained.model.strength =
+        plausible(&preview.pack().into_diagnostic()?, &rig, &sources, &targets).into_diagnostic()?;
+    let report = evaluate(&preview.pack().into_diagnostic()?, &rig, &trained.baselines, &named).into_diagnostic()?;
+    provenance.metrics = metrics(&trained, &report);
+    let bytes = trained.model.pack(&rig, &provenance);
+    write_whole(&args.out, &bytes)?;
+    bar.finish_and_clear();
+    if args.json {
+        print_json(&Summary::new(args, &trained, &report, bytes.len(), fps))
+    } else {
+        print(args, &trained, &report, bytes.len(), fps);
+        Ok(())
+    }
+}
+
+impl Args {
+    fn options(&self) -> TrainOptions {
+        TrainOptions {
+            order: self.order.map(usize::from),
+            form: match self.form {
+                Form::Auto => FormChoice::Auto,
+                Form::PerJoint => FormChoice::PerJoint,
+                Form::WholeBody => FormChoice::WholeBody,
+            },
+            alignment: match self.align {
+                Align::Auto => None,
+                Align::Warp => Some(Alignment::Warp),
+                Align::Uniform => Some(Alignment::Uniform),
+                Align::InStep => Some(Alignment::InStep),
+                Align::Opposite => Some(Alignment::Opposite),
+            },
+            mirror: match self.mirror {
+                Mirror::Auto => None,
+                Mirror::On => Some(true),
+                Mirror::Off => Some(false),
+            },
+        }
+    }
+}
+
+fn file_stem(path: &std::path::Path) -> String {
+    path.file_stem().map_or_else(|| "style".to_owned(), |stem| stem.to_string_lossy().into_owned())
+}
+
+fn alignment_name(alignment: Alignment) -> &'static str {
+    match alignment {
+        Alignment::Warp => "warp",
+        Alignment::Uniform => "uniform",
+        Alignment::InStep => "in-step",
+        Alignment::Opposite => "opposite",
+    }
+}
+
+fn describe(candidate: &Candidate) -> String {
+    if *candidate == AFFINE {
+        return "per joint, static affine map".to_owned();
+    }
+    let poles = match candidate.poles {
+        Poles::Static => "no memory".to_owned(),
+        Poles::Relaxation => "2 real poles an input".to_owned(),
+        Poles::Harmonics2 => "2 harmonics an input".to_owned(),
+        Poles::Harmonics3 => "3 harmonics an input".to_owned(),
+        Poles::Full => "2 real poles and 5 harmonics an input".to_owned(),
+        Poles::Identified(order) => format!("identified, order {order}"),
+    };
+    let form = candidate.coordinates.map_or("per joint".to_owned(), |c| format!("whole body, {c} coordinates"));
+    let base = match candidate.base {
+        Base::Mean => "mean pose",
+        Base::Identity => "the source",
+        Base::Channel => "a gain a channel",
+        Base::Joint => "a 3 x 3 a joint",
+    };
+    format!("{form}, {poles}, on {base}, penalty {}/{}", candidate.penalty, candidate.dynamic_penalty)
+}
+
+fn notes(trained: &Trained) -> Vec<String> {
+    let mut notes = vec![
+        format!("alignment: {}", alignment_name(trained.alignment)),
+        format!("model: {}", describe(&trained.candidate.0)),
+        format!("mirrored copies: {}", if trained.mirrored { "yes" } else { "no" }),
+        format!("main frequency: {:.2} Hz", trained.main_frequency),
+    ];
+    if trained.alignment == Alignment::Opposite {
+        notes.push(
+            "the clips start on opposite feet and left answers right: for masks, or strengths below 1, train with \
+             --align in-step"
+                .to_owned(),
+        );
+    }
+    notes
+}
+
+fn metrics(trained: &Trained, report: &Report) -> Vec<Metric> {
+    let metric = |name: &str, value: f64| Metric { name: name.to_owned(), value };
+    vec![
+        metric("validation_cm", trained.candidate.1),
+        metric("training_error_cm", report.errors.error_cm),
+        metric("training_identity_cm", report.errors.identity_cm),
+        metric("training_offset_cm", report.errors.offset_cm),
+        metric("training_affine_cm", report.errors.affine_cm),
+    ]
+}
+
+#[derive(Serialize)]
+struct Summary<'a> {
+    pack: String,
+    bytes: usize,
+    frame_rate: f64,
+    alignment: &'static str,
+    alignments: Vec<(&'static str, f64)>,
+    model: String,
+    forms: Vec<(String, f64)>,
+    mirrored: bool,
+    strength: [f64; 2],
+    validation_cm: f64,
+    training: &'a Report,
+}
+
+impl<'a> Summary<'a> {
+    fn new(args: &Args, trained: &Trained, report: &'a Report, bytes: usize, fps: f64) -> Self {
+        Self {
+            pack: args.out.display().to_string(),
+            bytes,
+            frame_rate: fps,
+            alignment: alignment_name(trained.alignment),
+            alignments: trained.alignments.iter().map(|(way, error)| (alignment_name(*way), *error)).collect(),
+            model: describe(&trained.candidate.0),
+            forms: trained.forms.iter().map(|(candidate, error)| (describe(candidate), *error)).collect(),
+            mirrored: trained.mirrored,
+            strength: trained.model.strength,
+            validation_cm: trained.candidate.1,
+            training: report,
+        }
+    }
+}
+
+fn print(args: &Args, trained: &Trained, report: &Report, bytes: usize, fps: f64) {
+    println!("alignment      {:<10} error on the training pairs, cm", "");
+    for (way, error) in &trained.alignments {
+        let mark = if *way == trained.alignment { "*" } else { " " };
+        println!("             {mark} {:<10} {error:8.2}", alignment_name(*way));
+    }
+    println!("model          validated among {} candidates, cm", trained.compared);
+    for (candidate, error) in &trained.forms {
+        let mark = if *candidate == trained.candidate.0 { "*" } else { " " };
+        println!("             {mark} {error:8.2}  {}", describe(candidate));
+    }
+    println!("training pairs, aligned RMS joint distance, cm");
+    println!("               identity {:8.2}", report.errors.identity_cm);
+    println!("               offset   {:8.2}", report.errors.offset_cm);
+    println!("               affine   {:8.2}", report.errors.affine_cm);
+    println!("               pack     {:8.2}", report.errors.error_cm);
+    for note in notes(trained).iter().skip(4) {
+        println!("note: {note}");
+    }
+    let [low, high] = trained.model.strength;
+    println!("{}: {bytes} bytes, {fps} frames a second, plausible strengths {low} to {high}", args.out.display());
+}

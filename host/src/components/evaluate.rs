@@ -1,0 +1,118 @@
+//! What a pack of components does, measured through the device's code.
+
+use kinesic::Pack;
+use kinesic::kernel::ROWS;
+use kinesic::model::LoadError;
+use serde::Serialize;
+
+use super::matrix::FRAME_RATE;
+use super::measure::{bone_error, jerk};
+use super::objective::bones;
+use super::play::{HostComponents, Settings, play_stored};
+use crate::pack::Metric;
+use crate::rig::Rig;
+
+/// Why an evaluation is impossible.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum EvaluateError {
+    /// The pack holds no components, or more than the host steps.
+    #[error(transparent)]
+    Load(#[from] LoadError),
+    /// There is nothing to play.
+    #[error("the pack holds no stored stream of weights: train it again with this release")]
+    NoStream,
+    /// A figure that needs the training clips is missing.
+    #[error("the pack does not record {name}: train it again with this release")]
+    NoMetric {
+        /// Which.
+        name: &'static str,
+    },
+}
+
+/// Figures of a pack. The first two need the training clips and were recorded by the training; the others are measured.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Report {
+    /// `|M - W C| / |M|` of the content clip (recorded).
+    pub reconstruction_error: f64,
+    /// `|Gram(C_S) - Gram(C_X)| / |Gram(C_S)|` (recorded).
+    pub style_distance: f64,
+    /// Number of components.
+    pub components: usize,
+    /// Share of the joint groups of the content components that are not zero.
+    pub density: f64,
+    /// `|C_C - C_X| / |C_C|`.
+    pub content_distance: f64,
+    /// Worst bone of the stored stream after the device has restored the bones, percent of its length.
+    pub bone_error_max_percent: f64,
+    /// Mean of the same.
+    pub bone_error_mean_percent: f64,
+    /// Worst bone of `mean + W C_X`, before.
+    pub composed_bone_error_max_percent: f64,
+    /// Mean of the same.
+    pub composed_bone_error_mean_percent: f64,
+    /// Jerk of the stored stream at strength 1 over that at strength 0.
+    pub jerk_ratio: f64,
+    /// Mean size of the third derivative of the joints' heading-local positions at strength 1, m/s^3.
+    pub jerk: f64,
+}
+
+/// Names under which the training records what [`evaluate`] cannot measure.
+pub const RECORDED: [&str; 2] = ["reconstruction_error", "style_distance"];
+
+/// Plays the stored stream and measures it.
+pub fn evaluate(pack: &Pack, rig: &Rig, recorded: &[Metric]) -> Result<Report, EvaluateError> {
+    let components = HostComponents::load(pack)?;
+    if components.frames() == 0 {
+        return Err(EvaluateError::NoStream);
+    }
+    let [reconstruction_error, style_distance] = {
+        let find = |name: &'static str| {
+            recorded.iter().find(|m| m.name == name).map(|m| m.value).ok_or(EvaluateError::NoMetric { name })
+        };
+        [find(RECORDED[0])?, find(RECORDED[1])?]
+    };
+    let (count, channels) = (components.meta().count as usize, 3 * rig.joints());
+    let matrix = |name| -> Result<Vec<f64>, LoadError> {
+        let tiles: &[[f32; ROWS]] = pack.slice(name, channels.div_ceil(ROWS) * count)?;
+        let at = |r: usize, k: usize| f64::from(tiles[r / ROWS * count + k][r % ROWS]);
+        Ok((0..channels).flat_map(|r| (0..count).map(move |k| (r, k))).map(|(r, k)| at(r, k)).collect())
+    };
+    let (content, change) = (matrix("components/compose")?, matrix("components/change")?);
+    let norm = |values: &[f64]| values.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let moved = |(joint, k): (usize, usize)| (0..3).any(|c| content[(3 * joint + c) * count + k] != 0.0);
+    let groups = (0..rig.joints()).flat_map(|joint| (0..count).map(move |k| (joint, k)));
+    let density = groups.filter(|group| moved(*group)).count() as f64 / (rig.joints() * count).max(1) as f64;
+
+    let mean: &[[f32; 3]] = pack.slice("components/mean", rig.joints())?;
+    let shift: &[[f32; 3]] = pack.slice("components/shift", rig.joints())?;
+    let weights: &[f32] = pack.slice("components/weights", components.frames() * count)?;
+    let mut composed = Vec::with_capacity(components.frames() * channels);
+    for row in weights.chunks_exact(count) {
+        for (c, (mean, shift)) in mean.as_flattened().iter().zip(shift.as_flattened()).enumerate() {
+            let along = |of: &[f64]| row.iter().zip(&of[c * count..]).map(|(w, x)| f64::from(*w) * x).sum::<f64>();
+            composed.push(f64::from(mean + shift) + along(&content) + along(&change));
+        }
+    }
+    let bones = bones(rig);
+    let before = bone_error(&composed, channels, &bones);
+    let mut settings = Settings::default();
+    let styled = rig.locals(&play_stored(pack, &settings)?).positions;
+    settings.controls.strength = 0.0;
+    let plain = rig.locals(&play_stored(pack, &settings)?).positions;
+    let after = bone_error(&styled, channels, &bones);
+    let jerks = [&styled, &plain].map(|positions| jerk(positions, channels, FRAME_RATE));
+    Ok(Report {
+        reconstruction_error,
+        style_distance,
+        components: count,
+        density,
+        content_distance: norm(&change) / norm(&content).max(1e-300),
+        bone_error_max_percent: after.max_percent,
+        bone_error_mean_percent: after.mean_percent,
+        composed_bone_error_max_percent: before.max_percent,
+        composed_bone_error_mean_percent: before.mean_percent,
+        jerk_ratio: jerks[0] / jerks[1].max(1e-300),
+        jerk: jerks[0],
+    })
+}

@@ -1,0 +1,45 @@
+//! Style components on the host (Phong, Thanh, Yu 2018): factorise two clips, learn, pack, play through the device's code.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `matrix` | a clip as a standardised matrix |
+//! | `factor` | `M ~ W C`: the penalised objective and its exact block updates |
+//! | `gather`, [`pca()`] | two starts: joints gathered into components, principal components (also the baseline) |
+//! | `prune`, `refit` | fewer joints for the same error; least squares on a support |
+//! | [`sparse()`] | the sparse factorisation as a whole |
+//! | `count` | how many components |
+//! | `objective`, `learn` | what style learning minimises, with its gradient; Adam from seeded noise |
+//! | [`train()`], `model` | from two clips to a pack; the trade-off curve |
+//! | `play`, `evaluate`, `measure` | through the device's code; bones, jerk, distances |
+
+mod count;
+mod evaluate;
+mod factor;
+mod gather;
+mod learn;
+mod matrix;
+mod measure;
+mod model;
+mod objective;
+mod pca;
+mod play;
+mod prune;
+mod refit;
+mod sparse;
+mod train;
+
+pub use count::{Choice, choose, joint_error};
+pub use evaluate::{EvaluateError, RECORDED, Report, evaluate};
+pub use factor::{Descent, Factors, descend};
+pub use gather::gather;
+pub use learn::{Learned, Optimiser, learn, noise};
+pub use matrix::{FRAME_RATE, Motion};
+pub use measure::{BoneError, bone_error, content_distance, jerk, style_distance};
+pub use model::ComponentsModel;
+pub use objective::{Bone, Objective, Terms, Weights, bones, gram};
+pub use pca::pca;
+pub use play::{HostComponents, MAX_COMPONENTS, Settings, play, play_stored};
+pub use prune::{exchange, prune};
+pub use refit::refit;
+pub use sparse::{Sparse, Sparsity, sparse};
+pub use train::{TradeOff, TrainError, TrainOptions, Trained, composed, trade_off, train};

@@ -1,0 +1,18 @@
+//! Trains kinesic models from motion-capture clips, packs them, previews and applies them.
+//!
+//! Data flows one way: [`clip`] (read) -> [`rig`] and [`retarget`] (one skeleton for all) -> [`align`] (one clock for a
+//! pair) -> [`translate`] (fit) -> [`pack`] (file); the device crate `kinesic` takes it from there, and [`translate::play`]
+//! runs that very crate to preview, apply and evaluate.
+
+pub mod align;
+pub mod clip;
+pub mod components;
+pub mod files;
+pub mod gait;
+pub mod mechanics;
+pub mod pack;
+pub mod prepare;
+pub mod quality;
+pub mod retarget;
+pub mod rig;
+pub mod translate;

@@ -1,0 +1,20 @@
+//! The command `kinesic`: learn how a motion is performed, pack it, play it through the device's code.
+
+mod commands;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use commands::Cli;
+
+fn main() -> ExitCode {
+    match commands::run(Cli::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(report) => {
+            // One line a cause, for people and for scripts alike.
+            eprintln!("{report:?}");
+            ExitCode::FAILURE
+        }
+    }
+}

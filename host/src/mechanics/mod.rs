@@ -1,0 +1,32 @@
+//! Body mechanics on the host: features and poses from clips, training, the applications through the device's code, evaluation.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `body` | sizes, feet and thighs of a rig; how high ankle and toes are in a flat foot |
+//! | `dataset` | one row a frame: features and pose, computed by the device's code |
+//! | `network` | small multilayer perceptrons: forward, gradient, Adam |
+//! | `linear` | the baseline: ridge regression from features to pose |
+//! | [`train`](train()) | autoencoder, feature network, stacking, fine-tuning |
+//! | `model` | a trained model, and its pack |
+//! | `play` | decouple, modulate, mix and blend clips |
+//! | `evaluate` | geodesic errors and what is left as expression, clip by clip |
+//! | `propose` | which clips look non-expressive |
+
+mod body;
+mod dataset;
+mod evaluate;
+mod linear;
+mod model;
+pub mod network;
+mod play;
+mod propose;
+mod train;
+
+pub use body::{BodyError, body, measured};
+pub use dataset::{Rows, signed, signs};
+pub use evaluate::{ClipReport, Report, evaluate};
+pub use linear::Linear;
+pub use model::MechanicsModel;
+pub use play::{HostMechanics, Overlap, blend, decouple, mix, modulate};
+pub use propose::{Proposal, propose};
+pub use train::{Figures, NamedClip, Progress, Split, TrainError, TrainOptions, Trained, train};

@@ -1,0 +1,295 @@
+//! Small multilayer perceptrons in f32: forward, analytic gradient, Adam. The products go through faer's `gemm`.
+
+use faer::linalg::matmul::matmul;
+use faer::{Accum, MatMut, MatRef, Par};
+use rand::RngExt;
+use rand::rngs::ChaCha8Rng;
+use rayon::prelude::*;
+
+/// Samples that one thread takes at a time. A batch is always cut alike and summed in the same order, so that results do not
+/// depend on the number of threads.
+const PART: usize = 128;
+
+/// `y = W x + b`, then tanh or nothing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layer {
+    /// Inputs.
+    pub inputs: usize,
+    /// Outputs.
+    pub outputs: usize,
+    /// Row-major `[outputs x inputs]`.
+    pub weights: Vec<f32>,
+    /// `[outputs]`.
+    pub bias: Vec<f32>,
+    /// Whether the outputs go through [`kinesic::kernel::tanh`], the device's own.
+    pub tanh: bool,
+}
+
+impl Layer {
+    /// Random weights, uniform with Glorot's bound, and no bias.
+    pub fn random(inputs: usize, outputs: usize, tanh: bool, random: &mut ChaCha8Rng) -> Self {
+        let bound = (6.0 / (inputs + outputs) as f32).sqrt();
+        let weights = (0..inputs * outputs).map(|_| random.random_range(-bound..bound)).collect();
+        Self { inputs, outputs, weights, bias: vec![0.0; outputs], tanh }
+    }
+
+    fn zeros(&self) -> Self {
+        Self { weights: vec![0.0; self.weights.len()], bias: vec![0.0; self.bias.len()], ..*self }
+    }
+
+    fn forward(&self, x: &[f32], samples: usize) -> Vec<f32> {
+        let mut y = self.bias.repeat(samples);
+        let weights = MatRef::from_row_major_slice(&self.weights, self.outputs, self.inputs);
+        let out = MatMut::from_row_major_slice_mut(&mut y, samples, self.outputs);
+        let x = MatRef::from_row_major_slice(x, samples, self.inputs);
+        matmul(out, Accum::Add, x, weights.transpose(), 1.0, Par::Seq);
+        if self.tanh {
+            y.iter_mut().for_each(|y| *y = kinesic::kernel::tanh(*y));
+        }
+        y
+    }
+}
+
+/// Layers one after the other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Network {
+    /// The layers, first to last.
+    pub layers: Vec<Layer>,
+}
+
+/// Rows of samples, row-major.
+#[derive(Clone, Copy, Debug)]
+pub struct Batch<'a> {
+    /// `[samples x inputs]`.
+    pub input: &'a [f32],
+    /// `[samples x outputs]`.
+    pub target: &'a [f32],
+}
+
+impl Network {
+    /// Numbers that go in.
+    pub fn inputs(&self) -> usize {
+        self.layers.first().map_or(0, |l| l.inputs)
+    }
+
+    /// Numbers that come out.
+    pub fn outputs(&self) -> usize {
+        self.layers.last().map_or(0, |l| l.outputs)
+    }
+
+    /// Outputs of all samples, row-major.
+    pub fn apply(&self, input: &[f32]) -> Vec<f32> {
+        let inputs = self.inputs().max(1);
+        input.par_chunks(1024 * inputs).map(|rows| self.values(rows).pop().unwrap_or_default()).flatten().collect()
+    }
+
+    /// Outputs of every layer.
+    fn values(&self, input: &[f32]) -> Vec<Vec<f32>> {
+        let samples = input.len() / self.inputs().max(1);
+        let mut values: Vec<Vec<f32>> = Vec::with_capacity(self.layers.len());
+        for layer in &self.layers {
+            let out = layer.forward(values.last().map_or(input, |v| v), samples);
+            values.push(out);
+        }
+        values
+    }
+
+    /// Sum of squared errors and its gradient by weights and biases.
+    pub fn gradient(&self, batch: Batch) -> (f64, Network) {
+        let (inputs, outputs) = (self.inputs().max(1), self.outputs().max(1));
+        let parts: Vec<(f64, Network)> = batch
+            .input
+            .par_chunks(PART * inputs)
+            .zip(batch.target.par_chunks(PART * outputs))
+            .map(|(input, target)| self.part(input, target))
+            .collect();
+        let mut sum = (0.0, Network { layers: self.layers.iter().map(Layer::zeros).collect() });
+        for (loss, gradient) in parts {
+            sum.0 += loss;
+            for (to, from) in sum.1.parameters_mut().zip(gradient.parameters()) {
+                to.iter_mut().zip(from).for_each(|(to, from)| *to += from);
+            }
+        }
+        sum
+    }
+
+    fn part(&self, input: &[f32], target: &[f32]) -> (f64, Network) {
+        let samples = input.len() / self.inputs().max(1);
+        let values = self.values(input);
+        let mut delta: Vec<f32> = values.last().map_or(input, |v| v).iter().zip(target).map(|(y, t)| y - t).collect();
+        let loss = delta.iter().map(|d| f64::from(*d).powi(2)).sum();
+        delta.iter_mut().for_each(|d| *d *= 2.0);
+        let mut gradient = Vec::with_capacity(self.layers.len());
+        for (index, layer) in self.layers.iter().enumerate().rev() {
+            if layer.tanh {
+                delta.iter_mut().zip(&values[index]).for_each(|(d, y)| *d *= 1.0 - y * y);
+            }
+            let x = if index == 0 { input } else { &values[index - 1] };
+            let mut to = layer.zeros();
+            let rows = MatRef::from_row_major_slice(&delta, samples, layer.outputs);
+            matmul(
+                MatMut::from_row_major_slice_mut(&mut to.weights, layer.outputs, layer.inputs),
+                Accum::Replace,
+                rows.transpose(),
+                MatRef::from_row_major_slice(x, samples, layer.inputs),
+                1.0,
+                Par::Seq,
+            );
+            for row in delta.chunks_exact(layer.outputs) {
+                to.bias.iter_mut().zip(row).for_each(|(b, d)| *b += d);
+            }
+            if index > 0 {
+                let mut before = vec![0.0; samples * layer.inputs];
+                matmul(
+                    MatMut::from_row_major_slice_mut(&mut before, samples, layer.inputs),
+                    Accum::Replace,
+                    rows,
+                    MatRef::from_row_major_slice(&layer.weights, layer.outputs, layer.inputs),
+                    1.0,
+                    Par::Seq,
+                );
+                delta = before;
+            }
+            gradient.push(to);
+        }
+        gradient.reverse();
+        (loss, Network { layers: gradient })
+    }
+
+    /// Weights and bias of every layer in turn.
+    pub fn parameters(&self) -> impl Iterator<Item = &Vec<f32>> {
+        self.layers.iter().flat_map(|l| [&l.weights, &l.bias])
+    }
+
+    /// Weights and bias of every layer in turn.
+    pub fn parameters_mut(&mut self) -> impl Iterator<Item = &mut Vec<f32>> {
+        self.layers.iter_mut().flat_map(|l| [&mut l.weights, &mut l.bias])
+    }
+}
+
+/// How to fit.
+#[derive(Clone, Copy, Debug)]
+pub struct Fit {
+    /// Passes over the samples.
+    pub epochs: usize,
+    /// Samples of a step.
+    pub batch: usize,
+    /// First learning rate; it falls to zero along a half cosine.
+    pub rate: f32,
+    /// Half the width over root 3 of the uniform noise added to the inputs: its deviation.
+    pub noise: f32,
+    /// Decoupled weight decay (per unit of learning rate).
+    pub decay: f32,
+}
+
+/// Fits a network by Adam. `input` may be corrupted with noise, `target` never is. `progress` hears the epoch and the mean
+/// squared error over it.
+pub fn fit(
+    network: &mut Network,
+    data: Batch,
+    how: &Fit,
+    random: &mut ChaCha8Rng,
+    progress: &dyn Fn(usize, f64),
+) -> f64 {
+    let (inputs, outputs) = (network.inputs().max(1), network.outputs().max(1));
+    let samples = data.input.len() / inputs;
+    let mut order: Vec<usize> = (0..samples).collect();
+    let mut first = Network { layers: network.layers.iter().map(Layer::zeros).collect() };
+    let mut second = first.clone();
+    let (mut step, mut error) = (0i32, f64::NAN);
+    let steps = (how.epochs * samples.div_ceil(how.batch.max(1))).max(1) as f32;
+    let width = how.noise * 3f32.sqrt();
+    for epoch in 0..how.epochs {
+        for last in (1..samples).rev() {
+            order.swap(last, random.random_range(0..=last));
+        }
+        let mut sum = 0.0;
+        for chosen in order.chunks(how.batch.max(1)) {
+            let mut x = Vec::with_capacity(chosen.len() * inputs);
+            let mut t = Vec::with_capacity(chosen.len() * outputs);
+            for sample in chosen {
+                x.extend_from_slice(&data.input[sample * inputs..][..inputs]);
+                t.extend_from_slice(&data.target[sample * outputs..][..outputs]);
+            }
+            if width > 0.0 {
+                x.iter_mut().for_each(|x| *x += random.random_range(-width..width));
+            }
+            let (loss, gradient) = network.gradient(Batch { input: &x, target: &t });
+            sum += loss;
+            let rate = how.rate * 0.5 * (1.0 + (std::f32::consts::PI * step as f32 / steps).cos());
+            step += 1;
+            let scale = 1.0 / (chosen.len() * outputs) as f32;
+            let (b1, b2) = (0.9f32, 0.999f32);
+            let (c1, c2) = (1.0 - b1.powi(step), 1.0 - b2.powi(step));
+            let moments = first.parameters_mut().zip(second.parameters_mut());
+            for ((w, g), (m, v)) in network.parameters_mut().zip(gradient.parameters()).zip(moments) {
+                for (((w, g), m), v) in w.iter_mut().zip(g).zip(m).zip(v) {
+                    let g = g * scale;
+                    *m = b1 * *m + (1.0 - b1) * g;
+                    *v = b2 * *v + (1.0 - b2) * g * g;
+                    *w -= rate * ((*m / c1) / ((*v / c2).sqrt() + 1e-8) + how.decay * *w);
+                }
+            }
+        }
+        error = sum / (samples * outputs) as f64;
+        progress(epoch + 1, error);
+    }
+    error
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::SeedableRng;
+
+    fn sample(count: usize, random: &mut ChaCha8Rng) -> Vec<f32> {
+        (0..count).map(|_| random.random_range(-1.0..1.0)).collect()
+    }
+
+    #[test]
+    fn gradients_are_those_of_finite_differences() {
+        let mut random = ChaCha8Rng::seed_from_u64(3);
+        let sizes = [(5, 7, true), (7, 4, true), (4, 3, false)];
+        let mut network = Network { layers: sizes.map(|(i, o, tanh)| Layer::random(i, o, tanh, &mut random)).to_vec() };
+        let (input, target) = (sample(200 * 5, &mut random), sample(200 * 3, &mut random));
+        let batch = Batch { input: &input, target: &target };
+        let (_, gradient) = network.gradient(batch);
+        let gradient: Vec<Vec<f32>> = gradient.parameters().cloned().collect();
+        let norm = gradient.iter().flatten().map(|g| f64::from(*g).powi(2)).sum::<f64>().sqrt();
+        let step = 1e-2f32;
+        for (block, gradient) in gradient.iter().enumerate() {
+            for (index, analytic) in gradient.iter().enumerate() {
+                let mut at = |shift: f32| {
+                    let parameter = &mut network.parameters_mut().nth(block).unwrap()[index];
+                    let before = *parameter;
+                    *parameter = before + shift;
+                    let loss = network.gradient(batch).0;
+                    network.parameters_mut().nth(block).unwrap()[index] = before;
+                    loss
+                };
+                let difference = (at(step) - at(-step)) / f64::from(2.0 * step);
+                let error = (difference - f64::from(*analytic)).abs();
+                assert!(error < 2e-4 * norm, "block {block}, parameter {index}: {difference} {analytic}, norm {norm}");
+            }
+        }
+    }
+
+    #[test]
+    fn learns_a_curve_and_repeats_itself() {
+        let input: Vec<f32> = (0..400).map(|i| i as f32 / 200.0 - 1.0).collect();
+        let target: Vec<f32> = input.iter().map(|x| (3.0 * x).sin()).collect();
+        let how = Fit { epochs: 200, batch: 32, rate: 1e-2, noise: 0.0, decay: 0.0 };
+        let run = || {
+            let mut random = ChaCha8Rng::seed_from_u64(1);
+            let mut network = Network {
+                layers: vec![Layer::random(1, 16, true, &mut random), Layer::random(16, 1, false, &mut random)],
+            };
+            let error = fit(&mut network, Batch { input: &input, target: &target }, &how, &mut random, &|_, _| ());
+            (error, network)
+        };
+        let (error, network) = run();
+        // The curve's variance is .5. How far the descent gets depends on the matrix kernel that the build chose.
+        assert!(error < 1e-2, "{error}");
+        assert_eq!(network, run().1);
+    }
+}

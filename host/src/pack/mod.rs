@@ -1,0 +1,9 @@
+//! Writing and reading packs (`.kin`), the files that the device runs. The format is in `docs/pack.md`.
+
+mod file;
+mod provenance;
+mod write;
+
+pub use file::{PackFile, ReadPackError};
+pub use provenance::{Baselines, InputFile, Metric, Provenance};
+pub use write::PackWriter;

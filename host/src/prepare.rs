@@ -1,0 +1,121 @@
+//! From files to motions on one rig at one frame rate: what every command does before its own work.
+
+use std::path::{Path, PathBuf};
+
+use sha2::{Digest, Sha256};
+
+use crate::clip::{self, Clip, JointMap, ReadError, ReadOptions, ResampleError};
+use crate::pack::InputFile;
+use crate::retarget::{RetargetError, retarget};
+use crate::rig::{Rig, RigError};
+
+/// Why a clip cannot be used.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PrepareError {
+    /// The file cannot be read.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// Names that no known layout has.
+    #[error(
+        "{}: the joint names are of no known skeleton: {joints}. Give a skeleton map (--map FILE) that names pelvis, head \
+         and limbs; `kinesic inspect --help` shows one",
+        path.display()
+    )]
+    UnknownSkeleton {
+        /// The file.
+        path: PathBuf,
+        /// Its joints.
+        joints: String,
+    },
+    /// The skeleton cannot be a rig.
+    #[error("{}: {error}", path.display())]
+    Rig {
+        /// The file.
+        path: PathBuf,
+        /// The cause.
+        error: RigError,
+    },
+    /// The motion does not fit the rig.
+    #[error("{}: {error}", path.display())]
+    Retarget {
+        /// The file.
+        path: PathBuf,
+        /// The cause.
+        error: RetargetError,
+    },
+    /// The frame rate is out of range.
+    #[error(transparent)]
+    Resample(#[from] ResampleError),
+    /// Too short to learn from or to play.
+    #[error("{}: {found} frames at {fps} fps are too few, expected at least {MIN_FRAMES}", path.display())]
+    TooShort {
+        /// The file.
+        path: PathBuf,
+        /// Its frames at that rate.
+        found: usize,
+        /// Frames per second.
+        fps: f64,
+    },
+}
+
+/// Frames below which a clip is no motion.
+const MIN_FRAMES: usize = 4;
+
+/// A clip with the map of its joints.
+#[derive(Clone, Debug)]
+pub struct Source {
+    /// Where it came from.
+    pub path: PathBuf,
+    /// The motion, as recorded.
+    pub clip: Clip,
+    /// Which joint is which.
+    pub map: JointMap,
+}
+
+impl Source {
+    /// Reads a clip; its joints must be known, by name or through the options' map.
+    pub fn read(path: &Path, options: &ReadOptions) -> Result<Self, PrepareError> {
+        let clip = clip::read_with(path, options)?;
+        let named = options.map.as_ref().and_then(|map| map.resolve(&clip.skeleton).ok());
+        let map = named.or_else(|| JointMap::detect(&clip.skeleton));
+        let map = map.ok_or_else(|| PrepareError::UnknownSkeleton {
+            path: path.to_owned(),
+            joints: clip.skeleton.joints.iter().map(|j| j.name.as_str()).collect::<Vec<_>>().join(", "),
+        })?;
+        Ok(Self { path: path.to_owned(), clip, map })
+    }
+
+    /// A rig of this clip's skeleton.
+    pub fn rig(&self) -> Result<Rig, PrepareError> {
+        Rig::new(&self.clip.skeleton, &self.map).map_err(|error| PrepareError::Rig { path: self.path.clone(), error })
+    }
+
+    /// The motion on a rig, at a frame rate.
+    pub fn on_rig(&self, rig: &Rig, fps: f64) -> Result<Clip, PrepareError> {
+        let clip = self.clip.resample(fps)?;
+        if clip.frames() < MIN_FRAMES {
+            return Err(PrepareError::TooShort { path: self.path.clone(), found: clip.frames(), fps });
+        }
+        retarget(&clip, &self.map, rig).map_err(|error| PrepareError::Retarget { path: self.path.clone(), error })
+    }
+
+    /// Name for reports: the path as given.
+    pub fn name(&self) -> String {
+        self.path.display().to_string()
+    }
+}
+
+/// Path and hash of a training file, for the provenance.
+pub fn fingerprint(path: &Path) -> Result<InputFile, std::io::Error> {
+    let bytes = std::fs::read(path)?;
+    let sha256 = Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
+    Ok(InputFile { path: path.display().to_string(), sha256 })
+}
+
+/// Frame rate for a pack unless told otherwise: that of the slowest clip, at most 60 per second.
+pub fn common_rate<'a>(clips: impl Iterator<Item = &'a Clip>) -> f64 {
+    let slowest = clips.map(Clip::fps).fold(60.0, f64::min);
+    // Frame times are written with few digits: 30.0003 is meant to be 30.
+    if (slowest - slowest.round()).abs() < 0.01 * slowest { slowest.round() } else { slowest }
+}

@@ -1,0 +1,244 @@
+//! The rig: a clip's skeleton in the form in which a pack holds it and the device walks it.
+
+use kinesic::model::LoadError;
+use kinesic::pose::{Heading, World, forward, local_positions};
+use kinesic::{Pack, Pose, Skeleton as DeviceSkeleton};
+use nalgebra::Vector3;
+
+use crate::clip::map::CANONICAL;
+use crate::clip::{Canonical, Clip, Joint, JointMap, Skeleton};
+use crate::pack::PackWriter;
+
+/// Capacity of the poses that the host steps; a rig has at most this many joints.
+pub const MAX_JOINTS: usize = 128;
+
+/// Bones shorter than this have no direction, m.
+const SHORTEST_BONE: f64 = 1e-4;
+
+/// Stands for a canonical joint that the skeleton does not have.
+const UNKNOWN: u16 = u16::MAX;
+
+/// Why a skeleton cannot be a rig.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RigError {
+    /// More joints than the host steps.
+    #[error("the skeleton has {found} joints, at most {MAX_JOINTS} are supported: remove finger or face joints")]
+    TooManyJoints {
+        /// Joints in the skeleton.
+        found: usize,
+    },
+    /// The heading needs both hips.
+    #[error(
+        "the skeleton has no known {missing}: give a skeleton map (--map FILE) that names it; the joints are: {joints}"
+    )]
+    NoHips {
+        /// What is missing.
+        missing: &'static str,
+        /// The joints' names.
+        joints: String,
+    },
+    /// The device refuses the tables, or a pack lacks them.
+    #[error("the skeleton's tables cannot be used: {0}")]
+    Refused(#[from] LoadError),
+}
+
+/// A skeleton as device tables, with the names and the joint map that the host needs beside them.
+#[derive(Clone, Debug)]
+pub struct Rig {
+    /// Joints, offsets in metres, in the clip's order.
+    pub skeleton: Skeleton,
+    /// Which joint is which.
+    pub map: JointMap,
+    parents: Vec<u16>,
+    offsets: Vec<[f32; 3]>,
+    aims: Vec<[u16; 2]>,
+    across: Vec<[u16; 2]>,
+}
+
+impl Rig {
+    /// The rig of a skeleton. `map` says which of its joints are the hips.
+    pub fn new(skeleton: &Skeleton, map: &JointMap) -> Result<Self, RigError> {
+        let joints = skeleton.joints.len();
+        if joints > MAX_JOINTS {
+            return Err(RigError::TooManyJoints { found: joints });
+        }
+        let hip = |canonical, missing| {
+            map.joint(canonical).map(|j| j as u16).ok_or_else(|| RigError::NoHips {
+                missing,
+                joints: skeleton.joints.iter().map(|j| j.name.as_str()).collect::<Vec<_>>().join(", "),
+            })
+        };
+        let across = vec![[hip(Canonical::LHip, "left hip")?, hip(Canonical::RHip, "right hip")?]];
+        let rig = Self {
+            parents: skeleton.joints.iter().map(|j| j.parent.unwrap_or(0) as u16).collect(),
+            offsets: skeleton.joints.iter().map(|j| j.offset.map(|x| x as f32).into()).collect(),
+            aims: aims(skeleton),
+            across,
+            skeleton: skeleton.clone(),
+            map: map.clone(),
+        };
+        rig.checked()?;
+        Ok(rig)
+    }
+
+    /// The device's view, checked.
+    fn checked(&self) -> Result<DeviceSkeleton<'_>, LoadError> {
+        DeviceSkeleton::new(&self.parents, &self.offsets, &self.aims, &self.across)
+    }
+
+    /// The device's view.
+    pub fn device(&self) -> DeviceSkeleton<'_> {
+        // Checked when the rig was made, and never changed since.
+        self.checked().unwrap_or_else(|error| unreachable!("a checked rig is refused: {error}"))
+    }
+
+    /// Number of joints.
+    pub fn joints(&self) -> usize {
+        self.parents.len()
+    }
+
+    /// Writes the skeleton's tables.
+    pub fn write(&self, pack: &mut PackWriter) {
+        for joint in &self.skeleton.joints {
+            pack.joint(&joint.name, joint.parent.map(|p| p as u16));
+        }
+        pack.u16s("skeleton/parents", 1, &self.parents);
+        pack.f32s("skeleton/offsets", 3, self.offsets.as_flattened());
+        pack.u16s("skeleton/aims", 2, self.aims.as_flattened());
+        pack.u16s("skeleton/across", 2, self.across.as_flattened());
+        let ends: Vec<f32> = self
+            .skeleton
+            .joints
+            .iter()
+            .flat_map(|j| j.end.map_or([0.0; 3], |end| end.map(|x| x as f32).into()))
+            .collect();
+        pack.f32s("skeleton/ends", 3, &ends);
+        let canonical = Canonical::ALL.map(|c| self.map.joint(c).map_or(UNKNOWN, |j| j as u16));
+        pack.u16s("skeleton/canonical", 1, &canonical);
+    }
+
+    /// The rig that a pack was trained on.
+    pub fn from_pack(pack: &Pack) -> Result<Self, RigError> {
+        let metas: Vec<_> = pack.metadata().joints.iter().collect();
+        let offsets: &[[f32; 3]] = pack.slice("skeleton/offsets", metas.len())?;
+        let ends: &[[f32; 3]] = pack.slice("skeleton/ends", metas.len())?;
+        let joints = metas.iter().zip(offsets).zip(ends).map(|((meta, offset), end)| Joint {
+            name: meta.name.to_owned(),
+            parent: meta.parent.map(usize::from),
+            offset: Vector3::from(*offset).cast(),
+            end: (*end != [0.0; 3]).then(|| Vector3::from(*end).cast()),
+        });
+        let skeleton = Skeleton { joints: joints.collect() };
+        let known: &[[u16; CANONICAL]] = pack.slice("skeleton/canonical", 1)?;
+        let indices = known[0].map(|joint| (joint != UNKNOWN).then_some(usize::from(joint)));
+        let map = JointMap::from_indices("pack", indices, &skeleton);
+        Self::new(&skeleton, &map)
+    }
+
+    /// The poses of a clip on this rig (same joints in the same order; see [`retarget`](crate::retarget)).
+    pub fn poses(&self, clip: &Clip) -> Vec<Pose<MAX_JOINTS>> {
+        clip.rotations
+            .chunks_exact(self.joints())
+            .zip(&clip.root)
+            .map(|(rotations, root)| {
+                let mut pose = Pose::identity();
+                pose.root = root.map(|x| x as f32);
+                for (to, from) in pose.rotations.iter_mut().zip(rotations) {
+                    *to = from.cast();
+                }
+                pose
+            })
+            .collect()
+    }
+
+    /// A clip of poses on this rig.
+    pub fn clip(&self, poses: &[Pose<MAX_JOINTS>], frame_time: f64) -> Clip {
+        let joints = self.joints();
+        Clip {
+            skeleton: self.skeleton.clone(),
+            frame_time,
+            root: poses.iter().map(|pose| pose.root.map(f64::from)).collect(),
+            rotations: poses
+                .iter()
+                .flat_map(|pose| pose.rotations.iter().take(joints))
+                .map(|q| nalgebra::UnitQuaternion::new_normalize(q.into_inner().cast()))
+                .collect(),
+            notes: Vec::new(),
+        }
+    }
+
+    /// Heading-local positions as the device computes them, and the root's travel.
+    pub fn locals(&self, poses: &[Pose<MAX_JOINTS>]) -> Locals {
+        let skeleton = self.device();
+        let mut heading = Heading::default();
+        let mut world = World::<MAX_JOINTS>::identity();
+        let mut locals =
+            Locals { joints: self.joints(), positions: Vec::new(), travel: Vec::with_capacity(poses.len()) };
+        let mut last = poses.first().map_or_else(Vector3::zeros, |pose| pose.root);
+        for pose in poses {
+            forward(&skeleton, pose, &mut world);
+            heading = heading.follow(&skeleton, &world);
+            let rows = local_positions(&skeleton, &world, heading);
+            locals.positions.extend(rows[..self.joints()].as_flattened().iter().map(|x| f64::from(*x)));
+            let travel = heading.to_local(pose.root - last);
+            locals.travel.push([f64::from(travel.x), f64::from(travel.z)]);
+            last = pose.root;
+        }
+        locals
+    }
+}
+
+/// A clip as the models see it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Locals {
+    /// Number of joints.
+    pub joints: usize,
+    /// Heading-local positions, m, row-major `[frames x 3 joints]`; the root's is `[0, height, 0]`.
+    pub positions: Vec<f64>,
+    /// Heading-local horizontal travel of the root since the last frame, m, `[frames]` of `[x, z]`.
+    pub travel: Vec<[f64; 2]>,
+}
+
+impl Locals {
+    /// Number of frames.
+    pub fn frames(&self) -> usize {
+        self.travel.len()
+    }
+
+    /// Values of one frame.
+    pub fn channels(&self) -> usize {
+        3 * self.joints
+    }
+}
+
+/// Which bones turn which joint: `[joint, descendant]`, in order of the joint.
+///
+/// A joint is turned by the bones that are rigidly attached to it; if these leave a turn open (none, or all on one line),
+/// also by those behind joints of no length (CMU skeletons hang both legs and the spine from such joints).
+fn aims(skeleton: &Skeleton) -> Vec<[u16; 2]> {
+    let joints = &skeleton.joints;
+    let mut aims = Vec::new();
+    for joint in 0..joints.len() {
+        let children = |of: usize| (of + 1..joints.len()).filter(move |c| joints[*c].parent == Some(of));
+        let has_length = |child: &usize| joints[*child].offset.norm() > SHORTEST_BONE;
+        let mut bones: Vec<usize> = children(joint).filter(has_length).collect();
+        let open = bones.is_empty() || bones.len() > 1 && on_one_line(bones.iter().map(|b| joints[*b].offset));
+        if open {
+            let mut hidden: Vec<usize> = children(joint).filter(|c| !has_length(c)).collect();
+            while let Some(behind) = hidden.pop() {
+                for child in children(behind) {
+                    if has_length(&child) { bones.push(child) } else { hidden.push(child) }
+                }
+            }
+            bones.sort_unstable();
+        }
+        aims.extend(bones.into_iter().map(|bone| [joint as u16, bone as u16]));
+    }
+    aims
+}
+
+fn on_one_line(mut bones: impl Iterator<Item = Vector3<f64>>) -> bool {
+    let Some(first) = bones.next() else { return true };
+    bones.all(|bone| bone.cross(&first).norm() < 0.02 * bone.norm() * first.norm())
+}

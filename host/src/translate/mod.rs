@@ -1,0 +1,38 @@
+//! Style translation on the host: train from pairs of clips, play through the device's code, evaluate.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `correspond` | which styled moment belongs to which source frame |
+//! | `dataset` | training sequences: source frames and wanted output |
+//! | `dynamics` | candidate dynamics: banks of poles, simulation |
+//! | [`identify`] | dynamics from data: impulse response, truncation, modal form |
+//! | `candidate`, `features`, `moments`, `fit` | ridge regression and cross-validation from second moments |
+//! | [`train`](train()) | the whole of it |
+//! | `model` | a trained translator, and its pack |
+//! | `play`, `evaluate`, `baseline` | through the device's code; beside simpler models |
+
+mod baseline;
+mod candidate;
+mod correspond;
+mod dataset;
+mod dynamics;
+mod evaluate;
+mod features;
+mod fit;
+pub mod identify;
+mod model;
+mod moments;
+mod play;
+mod simulate;
+mod strength;
+mod train;
+
+pub use candidate::{AFFINE, Candidate};
+pub use correspond::Alignment;
+pub use dynamics::{Dynamics, Poles};
+pub use evaluate::{Errors, EvaluateError, NamedPair, PairReport, Report, evaluate};
+pub use model::{BankModel, TimingModel, TranslatorModel};
+pub use moments::Base;
+pub use play::{HostTranslator, Settings, Timing, play};
+pub use strength::plausible;
+pub use train::{DEFAULT_ORDER, FormChoice, Stage, TrainError, TrainOptions, TrainPair, Trained, partners, train};

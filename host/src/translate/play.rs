@@ -1,0 +1,93 @@
+//! Plays a pack through the device's own code, frame by frame.
+
+use kinesic::model::LoadError;
+use kinesic::translate::Controls;
+use kinesic::{Pack, Pose, Translator, TranslatorState};
+use nalgebra::UnitQuaternion;
+
+use crate::rig::MAX_JOINTS;
+
+/// Filter states that the host steps.
+const MAX_STATES: usize = 16_384;
+
+/// The device's translator at the host's capacity.
+pub type HostTranslator<'a> = Translator<'a, MAX_JOINTS, MAX_STATES>;
+
+/// Whether the style may change the clock.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Timing {
+    /// Frame for frame, as on a live stream.
+    #[default]
+    Keep,
+    /// Stretched and squeezed as learned from the training pairs; for whole clips only.
+    Learned,
+}
+
+/// How a pack is played.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// Strength and mask.
+    pub controls: Controls<MAX_JOINTS>,
+    /// The clock.
+    pub timing: Timing,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { controls: Controls::default(), timing: Timing::Keep }
+    }
+}
+
+/// Translates the poses of a clip at the pack's frame rate, from the state that holding the first pose leads to.
+pub fn play(pack: &Pack, source: &[Pose<MAX_JOINTS>], settings: &Settings) -> Result<Vec<Pose<MAX_JOINTS>>, LoadError> {
+    let translator = HostTranslator::load(pack)?;
+    let mut state = Box::new(TranslatorState::new());
+    state.controls = settings.controls;
+    let mut styled = Vec::with_capacity(source.len());
+    let mut clock = Vec::with_capacity(source.len());
+    let mut now = 0.0;
+    if let Some(first) = source.first() {
+        translator.start(&mut state, first);
+    }
+    for pose in source {
+        let mut out = Pose::identity();
+        let timing = translator.step(&mut state, pose, &mut out);
+        styled.push(out);
+        clock.push(now);
+        // Strength acts on the clock as on the pose: 0 keeps it.
+        now += f64::from(timing.duration).powf(f64::from(settings.controls.strength));
+    }
+    Ok(match settings.timing {
+        Timing::Keep => styled,
+        Timing::Learned => retime(&styled, &clock),
+    })
+}
+
+/// Poses at whole frames of `clock`, which says when each pose is due, in frames, rising.
+fn retime(poses: &[Pose<MAX_JOINTS>], clock: &[f64]) -> Vec<Pose<MAX_JOINTS>> {
+    let Some(end) = clock.last() else { return Vec::new() };
+    let mut next = 1;
+    (0..=end.floor() as usize)
+        .map(|frame| {
+            let due = frame as f64;
+            while next + 1 < clock.len() && clock[next] < due {
+                next += 1;
+            }
+            if poses.len() < 2 {
+                return poses[0];
+            }
+            let weight = ((due - clock[next - 1]) / (clock[next] - clock[next - 1])).clamp(0.0, 1.0) as f32;
+            between(&poses[next - 1], &poses[next], weight)
+        })
+        .collect()
+}
+
+/// Linear interpolation of two poses.
+pub(crate) fn between(a: &Pose<MAX_JOINTS>, b: &Pose<MAX_JOINTS>, weight: f32) -> Pose<MAX_JOINTS> {
+    let mut pose = Pose::identity();
+    pose.root = a.root.lerp(&b.root, weight);
+    for (out, (a, b)) in pose.rotations.iter_mut().zip(a.rotations.iter().zip(&b.rotations)) {
+        *out = UnitQuaternion::new_normalize(kinesic::pose::nlerp(a, b, weight).into_inner());
+    }
+    pose
+}

@@ -1,0 +1,337 @@
+//! Training: from pairs of clips on one rig to a pack.
+
+use std::path::Path;
+
+use rayon::prelude::*;
+
+use super::baseline;
+use super::candidate::{AFFINE, Candidate, JUDGE, QUICK};
+use super::correspond::{Alignment, OPEN, correspond, correspond_output, correspond_plainly};
+use super::dataset::{Correspondence, Sequence};
+use super::dynamics::Poles;
+use super::fit::Problem;
+use super::model::TranslatorModel;
+use super::moments::Base;
+use super::simulate::simulate;
+use crate::align::{AlignError, Ends, Series, aligned_distance, aligned_path};
+use crate::pack::Baselines;
+use crate::rig::{Locals, Rig};
+
+/// Which form to train.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum FormChoice {
+    /// The one with the smaller validation error.
+    #[default]
+    Auto,
+    /// A model a joint (Dong 2018).
+    PerJoint,
+    /// One model for all joints (Hsu 2005).
+    WholeBody,
+}
+
+/// How to train.
+#[derive(Clone, Debug)]
+pub struct TrainOptions {
+    /// Largest order: states of one joint's model, or of the shared one.
+    pub order: Option<usize>,
+    /// Form, chosen by validation unless given.
+    pub form: FormChoice,
+    /// Way in which the clips correspond, chosen by the error on the training pairs unless given.
+    pub alignment: Option<Alignment>,
+    /// Train on mirrored copies too; chosen by validation unless given.
+    pub mirror: Option<bool>,
+}
+
+impl Default for TrainOptions {
+    fn default() -> Self {
+        Self { order: None, form: FormChoice::Auto, alignment: None, mirror: None }
+    }
+}
+
+/// Order of a joint's model unless told otherwise (Dong 2018).
+pub const DEFAULT_ORDER: usize = 40;
+/// Order of the shared model unless told otherwise.
+const WHOLE_BODY_ORDER: usize = 64;
+/// Part by which a model must be better than the static affine map: less is within what a choice of clips changes.
+const MARGIN: f64 = 0.03;
+/// Times that the styled clip is aligned anew with what the model makes of the source.
+const REALIGNMENTS: usize = 2;
+
+/// Why training failed.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum TrainError {
+    /// No pairs.
+    #[error("there is no training pair: give at least one --pair NEUTRAL STYLED")]
+    NoPairs,
+    /// Two clips cannot be aligned.
+    #[error("{neutral} and {styled} cannot be aligned: {error}")]
+    Align {
+        /// Source clip.
+        neutral: String,
+        /// Target clip.
+        styled: String,
+        /// The cause.
+        error: AlignError,
+    },
+    /// Nothing to learn from.
+    #[error("the clips do not determine a model: they have too few frames, or nothing moves")]
+    Undetermined,
+}
+
+/// A training pair on one rig, at one frame rate.
+#[derive(Clone, Debug)]
+pub struct TrainPair {
+    /// Name of the source for messages.
+    pub source_name: String,
+    /// Name of the target for messages.
+    pub target_name: String,
+    /// Source motion.
+    pub source: Locals,
+    /// Styled motion.
+    pub target: Locals,
+}
+
+/// What came out of training.
+#[derive(Debug)]
+pub struct Trained {
+    /// The model.
+    pub model: TranslatorModel,
+    /// Offset and affine map fitted on the same pairs.
+    pub baselines: Baselines,
+    /// How the clips were brought together, and the error on the training pairs of every way that was tried, cm.
+    pub alignment: Alignment,
+    /// `(alignment, error)` of every way that was tried, cm.
+    pub alignments: Vec<(Alignment, f64)>,
+    /// Whether mirrored copies were trained on.
+    pub mirrored: bool,
+    /// The winner of validation and its error, cm.
+    pub candidate: (Candidate, f64),
+    /// The best candidate of each form and its error, cm.
+    pub forms: Vec<(Candidate, f64)>,
+    /// Frequency of the main resonance, Hz.
+    pub main_frequency: f64,
+    /// Number of candidates that were compared.
+    pub compared: usize,
+}
+
+/// Stages of training, for progress bars.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// Bringing the clips onto one clock.
+    Align,
+    /// Comparing forms, orders and penalties.
+    Validate,
+    /// Fitting the winner.
+    Fit,
+}
+
+/// Trains a translator. `progress` is called when a stage begins.
+pub fn train(
+    rig: &Rig,
+    pairs: &[TrainPair],
+    style: &str,
+    fps: f64,
+    options: &TrainOptions,
+    progress: &(dyn Fn(Stage) + Sync),
+) -> Result<Trained, TrainError> {
+    if pairs.is_empty() {
+        return Err(TrainError::NoPairs);
+    }
+    progress(Stage::Align);
+    let partners = partners(rig);
+    let ways = options.alignment.map_or_else(|| Alignment::ALL.to_vec(), |way| vec![way]);
+    let tried: Vec<(Alignment, f64, Vec<Sequence>)> = ways
+        .par_iter()
+        .map(|way| aligned(*way, rig, pairs, &partners, fps).map(|(error, sequences)| (*way, error, sequences)))
+        .collect::<Result<_, _>>()?;
+    let alignments = tried.iter().map(|(way, error, _)| (*way, 100.0 * error)).collect();
+    let best = tried.into_iter().min_by(|a, b| a.1.total_cmp(&b.1));
+    let (alignment, _, sequences) = best.ok_or(TrainError::NoPairs)?;
+
+    progress(Stage::Validate);
+    let copies: Vec<Sequence> = sequences.iter().map(|s| s.mirrored(&partners)).collect();
+    let mirrored = options.mirror.unwrap_or_else(|| {
+        let error = |copies| Problem::new(&sequences, copies, fps).validate(&[QUICK])[0];
+        error(&copies) < error(&[])
+    });
+    let problem = Problem::new(&sequences, if mirrored { &copies } else { &[] }, fps);
+    let grid = grid(options);
+    let errors = problem.validate(&grid);
+    let best_of = |keep: &dyn Fn(&Candidate) -> bool| {
+        let kept = grid.iter().zip(&errors).filter(|(candidate, error)| keep(candidate) && error.is_finite());
+        kept.min_by(|a, b| a.1.total_cmp(b.1)).map(|(candidate, _)| *candidate)
+    };
+    let whole_body = best_of(&|c| c.coordinates.is_some());
+    let per_joint = best_of(&|c| c.coordinates.is_none());
+    // What is in step by choice must not be judged by its ends.
+    let ends = if alignment == Alignment::InStep { OPEN } else { Ends::Closed };
+    let mut forms = Vec::new();
+    for candidate in per_joint.into_iter().chain(whole_body) {
+        forms.push((candidate, 100.0 * held_out_error(&problem, &candidate, pairs, ends)?));
+    }
+    // The plain affine map, on the plain time warp, must be beaten clearly to be replaced.
+    let plain = if alignment == Alignment::InStep { sequences.clone() } else { plain_sequences(pairs)? };
+    let plain = Problem::new(&plain, &[], fps);
+    if options.form == FormChoice::Auto {
+        forms.push((AFFINE, 100.0 * held_out_error(&plain, &AFFINE, pairs, ends)?));
+    }
+    let best = *forms.iter().min_by(|a, b| a.1.total_cmp(&b.1)).ok_or(TrainError::Undetermined)?;
+    let simple = forms.iter().find(|(candidate, error)| *candidate == AFFINE && best.1 > (1.0 - MARGIN) * error);
+    let candidate = *simple.unwrap_or(&best);
+
+    progress(Stage::Fit);
+    let problem = if candidate.0 == AFFINE { plain } else { problem };
+    let model = problem.fit(&candidate.0, style).ok_or(TrainError::Undetermined)?;
+    Ok(Trained {
+        model,
+        baselines: baselines(pairs)?,
+        alignment,
+        alignments,
+        mirrored,
+        candidate,
+        forms,
+        main_frequency: problem.main_frequency(),
+        compared: grid.len(),
+    })
+}
+
+/// Aligned RMS joint distance of what a candidate makes of the folds that it has not seen, root mean square of the pairs, m.
+fn held_out_error(
+    problem: &Problem,
+    candidate: &Candidate,
+    pairs: &[TrainPair],
+    ends: Ends,
+) -> Result<f64, TrainError> {
+    let predicted = problem.held_out(candidate).ok_or(TrainError::Undetermined)?;
+    let mut error = 0.0;
+    for (pair, predicted) in pairs.iter().zip(&predicted) {
+        let series = |values| Series::new(values, pair.source.channels());
+        let distance = || Ok(aligned_distance(series(predicted)?, series(&pair.target.positions)?, ends)?.rms);
+        error += distance().map_err(|error| pair.failed(error))?.powi(2) / pairs.len() as f64;
+    }
+    Ok(error.sqrt())
+}
+
+/// Pairs whose source names begin alike, up to the first `_`, are of one person or one content: held back together.
+fn groups(pairs: &[TrainPair]) -> Vec<usize> {
+    let key = |pair: &TrainPair| {
+        let stem =
+            Path::new(&pair.source_name).file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+        stem.split('_').next().unwrap_or_default().to_owned()
+    };
+    let keys: Vec<String> = pairs.iter().map(key).collect();
+    keys.iter().map(|k| keys.iter().position(|other| other == k).unwrap_or(0)).collect()
+}
+
+/// The mirror partner of every joint; a joint without one is its own.
+pub fn partners(rig: &Rig) -> Vec<usize> {
+    (0..rig.joints()).map(|joint| rig.map.mirror_partner(joint).unwrap_or(joint)).collect()
+}
+
+/// Sequences of all pairs under one way of alignment, refined, and the error on the pairs, m, of a memoryless model that has
+/// not seen the block it speaks of.
+fn aligned(
+    way: Alignment,
+    rig: &Rig,
+    pairs: &[TrainPair],
+    partners: &[usize],
+    fps: f64,
+) -> Result<(f64, Vec<Sequence>), TrainError> {
+    let groups = groups(pairs);
+    let sequences = |on: &dyn Fn(usize, &TrainPair) -> Result<Correspondence, AlignError>| {
+        let of = |(index, pair): (usize, &TrainPair)| {
+            let correspondence = on(index, pair).map_err(|error| pair.failed(error))?;
+            Ok(Sequence::new(&pair.source, &pair.target, &correspondence, groups[index]))
+        };
+        pairs.iter().enumerate().map(of).collect::<Result<Vec<_>, TrainError>>()
+    };
+    let mut current = sequences(&|_, pair| correspond(way, &pair.source, &pair.target, rig, partners, fps))?;
+    let quick = |sequences: &[Sequence]| {
+        let model = Problem::new(sequences, &[], fps).fit(&QUICK, "").ok_or(TrainError::Undetermined)?;
+        Ok::<_, TrainError>(pairs.iter().map(|pair| simulate(&model, &pair.source)).collect::<Vec<_>>())
+    };
+    for _ in 0..REALIGNMENTS {
+        let styled = quick(&current)?;
+        current = sequences(&|index, pair| correspond_output(way, &styled[index], &pair.target, fps))?;
+    }
+    Ok((held_out_error(&Problem::new(&current, &[], fps), &JUDGE, pairs, Ends::Closed)?, current))
+}
+
+impl TrainPair {
+    fn failed(&self, error: AlignError) -> TrainError {
+        TrainError::Align { neutral: self.source_name.clone(), styled: self.target_name.clone(), error }
+    }
+}
+
+/// Rows of the matches of the plain time warp of positions, source and target, `[matches x 3 joints]`.
+fn plain_matches(pair: &TrainPair) -> Result<(Vec<f64>, Vec<f64>), TrainError> {
+    let channels = pair.source.channels();
+    let (from, to) = (&pair.source.positions, &pair.target.positions);
+    let path = || aligned_path(Series::new(from, channels)?, Series::new(to, channels)?);
+    let path = path().map_err(|error| pair.failed(error))?;
+    let row = |rows: &[f64], at: usize| rows[at * channels..(at + 1) * channels].to_vec();
+    Ok((path.iter().flat_map(|(i, _)| row(from, *i)).collect(), path.iter().flat_map(|(_, j)| row(to, *j)).collect()))
+}
+
+/// Baselines on the plain time warp, which is what a user without this program would do.
+fn baselines(pairs: &[TrainPair]) -> Result<Baselines, TrainError> {
+    let (mut source, mut target) = (Vec::new(), Vec::new());
+    for pair in pairs {
+        let (from, to) = plain_matches(pair)?;
+        source.extend(from);
+        target.extend(to);
+    }
+    Ok(baseline::fit(&source, &target, pairs.first().map_or(0, |pair| pair.source.joints)))
+}
+
+/// Training sequences on the plain time warp: the mean match of each source frame, and the clips' average timing.
+fn plain_sequences(pairs: &[TrainPair]) -> Result<Vec<Sequence>, TrainError> {
+    let groups = groups(pairs);
+    let of = |(pair, group): (&TrainPair, &usize)| {
+        let on = correspond_plainly(&pair.source, &pair.target).map_err(|error| pair.failed(error))?;
+        Ok(Sequence::new(&pair.source, &pair.target, &on, *group))
+    };
+    pairs.iter().zip(&groups).map(of).collect()
+}
+
+/// Everything that validation compares.
+fn grid(options: &TrainOptions) -> Vec<Candidate> {
+    let mut grid = Vec::new();
+    let mut add = |coordinates: Option<usize>, poles: &[Poles], bases: &[Base], limit: usize| {
+        for poles in poles.iter().filter(|p| p.states(coordinates.unwrap_or(3)) <= limit) {
+            for base in bases {
+                for penalty in [1e-3, 1e-2, 1e-1, 0.3, 1.0, 10.0] {
+                    let factors: &[f64] = if *poles == Poles::Static { &[1.0] } else { &[1.0, 10.0] };
+                    grid.extend(factors.iter().map(|factor| Candidate {
+                        coordinates,
+                        poles: *poles,
+                        base: *base,
+                        penalty,
+                        dynamic_penalty: factor * penalty,
+                    }));
+                }
+            }
+        }
+    };
+    if options.form != FormChoice::PerJoint {
+        let limit = options.order.unwrap_or(WHOLE_BODY_ORDER);
+        let poles = [Poles::Static, Poles::Relaxation, Poles::Harmonics2, Poles::Harmonics3];
+        for coordinates in [4, 8, 12] {
+            add(Some(coordinates), &poles, &[Base::Mean, Base::Identity, Base::Channel, Base::Joint], limit);
+        }
+    }
+    if options.form != FormChoice::WholeBody {
+        let limit = options.order.unwrap_or(DEFAULT_ORDER);
+        let poles = [
+            Poles::Static,
+            Poles::Relaxation,
+            Poles::Harmonics3,
+            Poles::Full,
+            Poles::Identified(limit.min(12)),
+            Poles::Identified(limit),
+        ];
+        add(None, &poles, &[Base::Mean, Base::Identity, Base::Channel, Base::Joint], limit);
+    }
+    grid
+}

@@ -1,0 +1,153 @@
+//! The factorisation and the gradients, on a made walk.
+
+mod components_common;
+
+use components_common::{rig, walk};
+use kinesic_host::components::{
+    Descent, Motion, Objective, Optimiser, Sparsity, TrainError, TrainOptions, Weights, bones, choose, descend, gather,
+    learn, noise, pca, prune, refit, sparse, train,
+};
+
+fn motion() -> Motion {
+    let rig = rig();
+    Motion::new(&rig.locals(&rig.poses(&walk(&rig, 150, 1.0, 0.1))))
+}
+
+#[test]
+fn no_sweep_raises_the_objective() {
+    let motion = motion();
+    let m = motion.values.as_ref();
+    for penalty in [0.0, 0.003, 0.03, 0.3, 3.0] {
+        for start in [pca(m, 12), gather(m, 12)] {
+            let descent = Descent { tolerance: 0.0, max_sweeps: 40 };
+            let (factors, history) = descend(m, start, penalty, &descent);
+            for (sweep, pair) in history.windows(2).enumerate() {
+                assert!(pair[1] <= pair[0] * (1.0 + 1e-12) + 1e-9, "sweep {sweep} at {penalty}: {pair:?}");
+            }
+            let last = history.last().expect("a start");
+            let direct = factors.objective(m, penalty);
+            assert!((direct - last).abs() <= 1e-8 * direct.max(1e-3), "{direct} {last}");
+            for k in 0..factors.count() {
+                let mean_square = factors.weights.col(k).squared_norm_l2() / motion.frames() as f64;
+                assert!(mean_square <= 1.0 + 1e-9, "weights {k} are out of bounds: {mean_square}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_larger_penalty_moves_fewer_joints() {
+    let motion = motion();
+    let m = motion.values.as_ref();
+    let density = |penalty| descend(m, gather(m, 12), penalty, &Descent::default()).0.density();
+    let densities = [0.003, 0.03, 0.3, 100.0].map(density);
+    assert!(densities.windows(2).all(|d| d[1] <= d[0]), "{densities:?}");
+    assert_eq!(densities[3], 0.0);
+}
+
+#[test]
+fn the_refit_keeps_the_support_and_lowers_the_error() {
+    let motion = motion();
+    let m = motion.values.as_ref();
+    let (factors, _) = descend(m, gather(m, 10), 0.1, &Descent::default());
+    let refitted = refit(m, &factors);
+    assert!(refitted.error(m) < factors.error(m), "{} {}", refitted.error(m), factors.error(m));
+    assert!(refitted.density() <= factors.density());
+    let pruned = prune(m, &refitted, 0.1);
+    assert!((pruned.density() - 0.1).abs() < 0.01, "{}", pruned.density());
+}
+
+#[test]
+fn principal_components_are_the_best_without_sparsity() {
+    let motion = motion();
+    let m = motion.values.as_ref();
+    let (full, few) = (pca(m, m.ncols()).error(m), pca(m, 6).error(m));
+    assert!(full < 1e-7, "{full}");
+    let sparse = sparse(m, 6, &Sparsity::default()).factors;
+    assert!(sparse.error(m) >= few, "{} {few}", sparse.error(m));
+    assert!(sparse.density() <= 0.16);
+    // No worse than the strongest groups of the principal components, refitted alike.
+    let thinned = prune(m, &pca(m, 6), sparse.density());
+    assert!(sparse.error(m) <= 1.02 * refit(m, &thinned).error(m), "{}", sparse.error(m));
+}
+
+#[test]
+fn gradients_agree_with_finite_differences() {
+    let rig = rig();
+    let bones = bones(&rig);
+    let content = motion();
+    let style = Motion::scaled(&rig.locals(&rig.poses(&walk(&rig, 130, 1.6, 0.5))), content.scale);
+    let [own, other] = [&content, &style].map(|m| sparse(m.values.as_ref(), 8, &Sparsity::default()).factors);
+    let none = Weights { content: 0.0, style: 0.0, bones: 0.0, smooth: 0.0 };
+    let terms = [
+        ("content", Weights { content: 1.0, ..none }),
+        ("style", Weights { style: 0.3, ..none }),
+        ("bones", Weights { bones: 2.0, ..none }),
+        ("smooth", Weights { smooth: 0.7, ..none }),
+        ("all", Weights { content: 1.0, style: 0.01, bones: 10.0, smooth: 1.0 }),
+    ];
+    for (name, weights) in terms {
+        let objective = Objective::new(&own, &other, &bones, &content.mean, content.scale, weights);
+        let at = noise(content.channels(), 8, 3);
+        let mut gradient = at.clone();
+        objective.evaluate(&at, &mut gradient);
+        let largest = gradient.norm_max();
+        for (row, column) in (0..content.channels()).flat_map(|r| (0..8).map(move |k| (r, k))).step_by(7) {
+            let h = 1e-5;
+            let value = |shift: f64| {
+                let mut moved = at.clone();
+                moved[(row, column)] += shift;
+                objective.evaluate(&moved, &mut moved.clone()).0
+            };
+            let difference = (value(h) - value(-h)) / (2.0 * h);
+            let found = gradient[(row, column)];
+            assert!((difference - found).abs() < 1e-5 * largest, "{name} [{row}, {column}]: {difference} {found}");
+        }
+    }
+}
+
+#[test]
+fn learning_reaches_the_threshold_and_the_same_place_from_the_same_seed() {
+    let rig = rig();
+    let bones = bones(&rig);
+    let content = motion();
+    let style = Motion::scaled(&rig.locals(&rig.poses(&walk(&rig, 130, 1.6, 0.5))), content.scale);
+    let [own, other] = [&content, &style].map(|m| sparse(m.values.as_ref(), 8, &Sparsity::default()).factors);
+    let objective = Objective::new(&own, &other, &bones, &content.mean, content.scale, Weights::default());
+    let run = |seed| learn(&objective, noise(content.channels(), 8, seed), &Optimiser::default());
+    let (a, b, c) = (run(1), run(1), run(2));
+    assert_eq!(a.components, b.components);
+    assert_ne!(a.components, c.components);
+    assert!(a.history.len() < Optimiser::default().max_steps, "the threshold was not reached");
+    let lowest = a.history.iter().copied().fold(f64::INFINITY, f64::min);
+    assert!(lowest < 0.05 * a.history[0], "{} {lowest}", a.history[0]);
+    // Another start ends about as low.
+    let other = c.history.iter().copied().fold(f64::INFINITY, f64::min);
+    assert!((other / lowest - 1.0).abs() < 0.05, "{lowest} {other}");
+}
+
+#[test]
+fn the_number_of_components_is_chosen_with_a_reason() {
+    let (choice, sparse) = choose(&motion(), &Sparsity::default());
+    assert_eq!(choice.count, sparse.factors.count());
+    assert!((5..=30).contains(&choice.count), "{choice:?}");
+    assert!(choice.reason.contains("would gain"), "{}", choice.reason);
+    assert!(choice.tried.windows(2).all(|t| t[0].0 < t[1].0), "{:?}", choice.tried);
+}
+
+#[test]
+fn impossible_requests_are_refused_with_what_to_do() {
+    let rig = rig();
+    let (content, style) = (walk(&rig, 60, 1.0, 0.1), walk(&rig, 60, 1.5, 0.3));
+    let run = |options: TrainOptions, content| train(&rig, content, &style, "x", &options).map(|_| ()).unwrap_err();
+    let count = |count| TrainOptions { count: Some(count), ..TrainOptions::default() };
+    assert_eq!(run(count(0), &content), TrainError::Count { found: 0, most: 39 });
+    assert_eq!(run(count(40), &content), TrainError::Count { found: 40, most: 39 });
+    let negative = TrainOptions { weights: Weights { style: -1.0, ..Weights::default() }, ..TrainOptions::default() };
+    assert_eq!(run(negative, &content).to_string(), "the style weight is -1: expected a finite number from 0 up");
+    let mut still = content.clone();
+    (1..60).for_each(|f| still.rotations.copy_within(0..13, 13 * f));
+    let first = still.root[0];
+    still.root.fill(first);
+    assert_eq!(run(count(5), &still), TrainError::Still { which: "content" });
+}

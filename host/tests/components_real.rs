@@ -1,0 +1,62 @@
+//! Real clips (`KINESIC_DATA`): what the documentation claims, on a part of the clips.
+
+mod components_common;
+
+use components_common::data;
+use kinesic_host::clip::ReadOptions;
+use kinesic_host::components::{
+    FRAME_RATE, Motion, Sparsity, TrainOptions, Weights, bone_error, bones, choose, pca, play_stored, prune, refit,
+    sparse, train,
+};
+use kinesic_host::pack::{PackFile, Provenance};
+use kinesic_host::prepare::Source;
+
+const PAIRS: [[&str; 2]; 3] = [
+    ["bandai1/guide_normal_001.bvh", "bandai1/guide_angry_001.bvh"],
+    ["bandai1/bow_normal_001.bvh", "bandai1/bow_active_001.bvh"],
+    ["xia/neutral_01_000.bvh", "xia/old_01_000.bvh"],
+];
+
+#[test]
+fn sparse_components_at_equal_density() {
+    let Some(folder) = data() else { return };
+    for [name, _] in PAIRS {
+        let source = Source::read(&folder.join(name), &ReadOptions::default()).expect("reads");
+        let rig = source.rig().expect("a rig");
+        let motion = Motion::new(&rig.locals(&rig.poses(&source.on_rig(&rig, FRAME_RATE).expect("fits"))));
+        let m = motion.values.as_ref();
+        for density in [0.08, 0.15, 0.3] {
+            let found = sparse(m, 30, &Sparsity { density: Some(density), ..Sparsity::default() });
+            assert!(found.history.windows(2).all(|h| h[1] <= h[0] * (1.0 + 1e-12)), "{name}: the objective rose");
+            let baseline = refit(m, &prune(m, &pca(m, 30), density));
+            let (ours, theirs) = (found.factors.error(m), baseline.error(m));
+            println!("{name} at density {density}: sparse {ours:.4}, pruned PCA {theirs:.4}");
+            assert!(ours <= theirs, "{name} at {density}: {ours} against {theirs}");
+        }
+        let (choice, _) = choose(&motion, &Sparsity::default());
+        assert!((10..=45).contains(&choice.count), "{name}: {choice:?}");
+    }
+}
+
+#[test]
+fn packs_of_real_pairs_keep_their_bones() {
+    let Some(folder) = data() else { return };
+    for names in PAIRS {
+        let [content, style] =
+            names.map(|name| Source::read(&folder.join(name), &ReadOptions::default()).expect("reads"));
+        let rig = content.rig().expect("a rig");
+        let [a, b] = [&content, &style].map(|clip| clip.on_rig(&rig, FRAME_RATE).expect("fits"));
+        let with = |bones| {
+            let weights = Weights { bones, ..Weights::default() };
+            let options = TrainOptions { count: Some(30), weights, ..TrainOptions::default() };
+            train(&rig, &a, &b, "style", &options).expect("trains")
+        };
+        let (plain, kept) = (with(0.0), with(10.0));
+        println!("{names:?}: without {:?}, with the bone term {:?}", plain.composed_bones, kept.composed_bones);
+        assert!(kept.composed_bones.mean_percent < 0.5 * plain.composed_bones.mean_percent);
+        let file = PackFile::from_bytes(&kept.model.pack(&rig, &Provenance::default()));
+        let played = play_stored(&file.pack().expect("loads"), &Default::default()).expect("plays");
+        let after = bone_error(&rig.locals(&played).positions, 3 * rig.joints(), &bones(&rig));
+        assert!(after.max_percent < 0.1, "{names:?}: {after:?}");
+    }
+}
