@@ -1,0 +1,170 @@
+//! Builds images and the emulator's plugin into the folder `firmware` of cargo's target folder, where they stay cached.
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::data::{Target, home};
+use crate::toolchain::Toolchain;
+
+/// A build failed.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum BuildError {
+    /// A file of the build cannot be written.
+    #[error("cannot write {}: {source}", path.display())]
+    Write {
+        /// The file or folder.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// cargo cannot be started.
+    #[error("cannot start {}: {source}", program.display())]
+    Start {
+        /// The program.
+        program: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// cargo says no.
+    #[error("building {what} failed:\n{log}")]
+    #[diagnostic(help("{command}"))]
+    Failed {
+        /// What was built.
+        what: String,
+        /// What cargo printed.
+        log: String,
+        /// The command, to run by hand.
+        command: String,
+    },
+}
+
+/// Where everything of a run lies.
+#[derive(Clone, Debug)]
+pub struct Folders {
+    root: PathBuf,
+}
+
+impl Folders {
+    /// The folder `firmware` in cargo's target folder.
+    pub fn new() -> Self {
+        let workspace = home().parent().map_or_else(home, Path::to_owned);
+        let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| workspace.join("target"), PathBuf::from);
+        let root = if target.is_absolute() { target } else { workspace.join(target) };
+        Self { root: root.join("firmware") }
+    }
+
+    /// The packs that images include.
+    pub fn packs(&self) -> PathBuf {
+        self.root.join("packs")
+    }
+
+    /// A folder of a target.
+    pub fn target(&self, name: &str) -> PathBuf {
+        self.root.join(name)
+    }
+
+    /// The folder of a run's files: input frames, output, counts.
+    pub fn run(&self, target: &str, workload: &str) -> PathBuf {
+        self.target(target).join("run").join(workload)
+    }
+}
+
+impl Default for Folders {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Writes a file, if its content changed, so that cargo rebuilds only what it must.
+pub fn write(path: &Path, content: &[u8]) -> Result<(), BuildError> {
+    if std::fs::read(path).is_ok_and(|old| old == content) {
+        return Ok(());
+    }
+    let error = |source| BuildError::Write { path: path.to_owned(), source };
+    std::fs::create_dir_all(path.parent().unwrap_or(path)).map_err(error)?;
+    std::fs::write(path, content).map_err(error)
+}
+
+/// The linker's view of the part, for `cortex-m-rt` and `riscv-rt` alike.
+fn layout(target: &Target) -> String {
+    let aliases = ["TEXT", "RODATA"].map(|region| format!("REGION_ALIAS(\"REGION_{region}\", FLASH);\n")).concat()
+        + &["DATA", "BSS", "HEAP", "STACK"].map(|region| format!("REGION_ALIAS(\"REGION_{region}\", RAM);\n")).concat();
+    format!(
+        "MEMORY\n{{\n  FLASH : ORIGIN = {:#x}, LENGTH = {}K\n  RAM : ORIGIN = {:#x}, LENGTH = {}K\n}}\n{aliases}_kinesic_frames = {:#x};\n",
+        target.flash.origin, target.flash.kib, target.ram.origin, target.ram.kib, target.frames
+    )
+}
+
+/// Builds images of a target and returns their folder.
+pub fn images(
+    folders: &Folders,
+    name: &str,
+    target: &Target,
+    toolchain: &Toolchain,
+    binaries: &[&str],
+) -> Result<PathBuf, BuildError> {
+    let folder = folders.target(name);
+    write(&folder.join("layout/memory.x"), layout(target).as_bytes())?;
+    let mut flags = vec![format!("-Ctarget-cpu={}", target.cpu), format!("-Clinker={}", toolchain.linker.display())];
+    flags.push("-Clinker-flavor=ld.lld".to_owned());
+    if !target.features.is_empty() {
+        flags.push(format!("-Ctarget-feature={}", target.features));
+    }
+    let mut cargo = Command::new(&toolchain.cargo);
+    cargo
+        .current_dir(home().join("image"))
+        .args(["build", "--release", "--locked", "--quiet", "--target", &target.triple, "--target-dir"])
+        .arg(&folder)
+        .args(binaries.iter().flat_map(|binary| ["--bin", binary]))
+        .args(toolchain.builds_core.then_some("-Zbuild-std=core"));
+    let mut settings: Vec<(&str, OsString)> = vec![
+        ("RUSTC", toolchain.rustc.clone().into()),
+        ("CARGO_ENCODED_RUSTFLAGS", flags.join("\x1f").into()),
+        ("KINESIC_LAYOUT", folder.join("layout").into()),
+        ("KINESIC_PACKS", folders.packs().into()),
+    ];
+    if toolchain.builds_core {
+        // Building the library from source is unstable for cargo's interface, not for the result: the compiler is a release.
+        settings.push(("RUSTC_BOOTSTRAP", "1".into()));
+    }
+    run(cargo, settings, &format!("the images for {name}"))?;
+    Ok(folder.join(&target.triple).join("release"))
+}
+
+/// Builds the plugin for the host and returns the library.
+pub fn plugin(folders: &Folders) -> Result<PathBuf, BuildError> {
+    let folder = folders.target("plugin");
+    let mut cargo = Command::new("cargo");
+    cargo
+        .current_dir(home().join("plugin"))
+        .args(["build", "--release", "--locked", "--quiet", "--target-dir"])
+        .arg(&folder);
+    run(cargo, Vec::new(), "the emulator's plugin")?;
+    Ok(folder.join("release/libkinesic_qemu_plugin.so"))
+}
+
+fn run(mut command: Command, settings: Vec<(&str, OsString)>, what: &str) -> Result<(), BuildError> {
+    // What a surrounding `cargo run` or `cargo test` set is about its own build, and would make this one look changed.
+    let own = ["CARGO_HOME", "CARGO_HTTP", "CARGO_NET", "CARGO_REGISTR", "CARGO_TERM", "CARGO_SOURCE", "RUSTUP_HOME"];
+    for (name, _) in std::env::vars_os() {
+        let text = name.to_string_lossy();
+        let cargos = ["CARGO", "RUST", "OUT_DIR", "LD_LIBRARY_PATH"].iter().any(|prefix| text.starts_with(prefix));
+        if cargos && !own.iter().any(|prefix| text.starts_with(prefix)) {
+            command.env_remove(&name);
+        }
+    }
+    for (name, value) in settings {
+        command.env(name, value);
+    }
+    let program = PathBuf::from(command.get_program());
+    let output = command.output().map_err(|source| BuildError::Start { program, source })?;
+    if output.status.success() {
+        return Ok(());
+    }
+    Err(BuildError::Failed {
+        what: what.to_owned(),
+        log: String::from_utf8_lossy(&output.stderr).into_owned(),
+        command: format!("{command:?}"),
+    })
+}

@@ -1,0 +1,54 @@
+//! The repository's own body mechanics, `models/mechanics.kin`, over a made walk of its skeleton.
+
+use std::path::Path;
+
+use kinesic::Pack;
+use kinesic_host::rig::Rig;
+use kinesic_workloads::mechanics::{JOINTS, Mechanics};
+
+use super::translator::numbers;
+use super::{Prepared, WorkloadError, aligned, on_host};
+use crate::data::home;
+use crate::made;
+
+const SEED: u64 = 3;
+const MODEL: &str = "models/mechanics.kin";
+
+pub fn prepare(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
+    let pack = model()?;
+    let refused = |_| WorkloadError::Refused { name: name.to_owned() };
+    let words = aligned(&pack);
+    let rig = Rig::from_pack(&Pack::load(&bytemuck::cast_slice(&words)[..pack.len()]).map_err(refused)?)?;
+    let clip = made::walk_on(&rig.skeleton, frames, SEED);
+    on_host::<Mechanics>(name, "mechanics.kin", pack, &numbers(&rig, &clip, JOINTS))
+}
+
+fn model() -> Result<Vec<u8>, WorkloadError> {
+    let path = home().parent().unwrap_or(Path::new(".")).join(MODEL);
+    std::fs::read(&path).map_err(|source| WorkloadError::Read { path, source })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use kinesic::mechanics::{Decoupled, MechanicsState};
+    use kinesic_host::mechanics::HostMechanics;
+
+    #[test]
+    fn both_feet_stand_and_fly() {
+        let pack = model().unwrap();
+        let words = aligned(&pack);
+        let pack = Pack::load(&bytemuck::cast_slice(&words)[..pack.len()]).unwrap();
+        let rig = Rig::from_pack(&pack).unwrap();
+        let model = HostMechanics::load(&pack).unwrap();
+        let (mut state, mut parts) = (MechanicsState::new(), Decoupled::identity());
+        let mut seen = [[false; 2]; 2];
+        for pose in rig.poses(&made::walk_on(&rig.skeleton, 1000, SEED)) {
+            model.step(&mut state, &pose, &mut parts);
+            for (seen, stands) in seen.iter_mut().zip(state.contacts().stands) {
+                seen[usize::from(stands)] = true;
+            }
+        }
+        assert_eq!(seen, [[true; 2]; 2]);
+    }
+}

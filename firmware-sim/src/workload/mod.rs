@@ -1,0 +1,122 @@
+//! The workloads by name: their pack, their input frames, and the same frames run on the host.
+//!
+//! A new workload is: its work in `firmware-sim/workloads/src/NAME.rs`, three lines in `firmware-sim/image/src/bin/NAME.rs`,
+//! its pack and input here, an entry in `budgets.toml`.
+
+mod components;
+mod mechanics;
+pub mod recorded;
+mod translator;
+
+use std::path::PathBuf;
+
+use kinesic_host::prepare::PrepareError;
+use kinesic_host::rig::RigError;
+use kinesic_host::translate::TrainError;
+use kinesic_workloads::{Digest, Frames, Workload};
+
+/// Pack and input of a workload, and the hashes that the host computed from them.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    /// File name of the pack that the image includes.
+    pub pack_name: &'static str,
+    /// The pack.
+    pub pack: Vec<u8>,
+    /// The block of input frames.
+    pub input: Vec<u8>,
+    /// Hash of each frame's output on the host.
+    pub hashes: Vec<u64>,
+}
+
+/// The host cannot run a workload.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum WorkloadError {
+    /// `budgets.toml` names a workload that has no code.
+    #[error("no workload is called {name}; there are {known}")]
+    #[diagnostic(help("add it in firmware-sim/src/workload/mod.rs, or correct the name in budgets.toml"))]
+    Unknown {
+        /// The name.
+        name: String,
+        /// What there is.
+        known: String,
+    },
+    /// A pack of the repository cannot be read.
+    #[error("cannot read {}: {source}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// A pack of the repository holds no skeleton.
+    #[error(transparent)]
+    Rig(#[from] RigError),
+    /// Components cannot be trained on the made walks.
+    #[error(transparent)]
+    Components(#[from] kinesic_host::components::TrainError),
+    /// Recorded clips cannot be used.
+    #[error(transparent)]
+    #[diagnostic(help("the recorded clips are looked for in --data, else in KINESIC_DATA, else in ../shared/data"))]
+    Prepare(#[from] PrepareError),
+    /// Recorded clips cannot be trained on.
+    #[error(transparent)]
+    Train(#[from] TrainError),
+    /// The workload refuses its own pack.
+    #[error("the workload {name} refuses its own pack")]
+    #[diagnostic(help("its capacities in firmware-sim/workloads must hold what firmware-sim/src/workload makes"))]
+    Refused {
+        /// The name.
+        name: String,
+    },
+}
+
+type Make = fn(&str, usize) -> Result<Prepared, WorkloadError>;
+
+const ALL: &[(&str, Make)] = &[
+    ("translator", translator::per_joint),
+    ("translator-body", translator::whole_body),
+    ("mechanics", mechanics::prepare),
+    ("components", components::prepare),
+];
+
+/// Makes pack and input of a workload and runs it on the host.
+pub fn prepare(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
+    let (_, make) = ALL.iter().find(|(known, _)| *known == name).ok_or_else(|| WorkloadError::Unknown {
+        name: name.to_owned(),
+        known: ALL.iter().map(|(known, _)| *known).collect::<Vec<_>>().join(", "),
+    })?;
+    make(name, frames)
+}
+
+/// The host's half of the proof that host and device compute the same: the same source, the same pack, the same frames.
+fn on_host<W: Workload>(
+    name: &str,
+    pack_name: &'static str,
+    pack: Vec<u8>,
+    frames: &[Vec<f32>],
+) -> Result<Prepared, WorkloadError> {
+    let stride = frames.first().map_or(0, Vec::len) * 4;
+    let mut input: Vec<u8> = bytemuck::cast_slice(&Frames::header(frames.len() as u32, stride as u32)).to_vec();
+    frames.iter().for_each(|frame| input.extend_from_slice(bytemuck::cast_slice(frame)));
+
+    let words = aligned(&pack);
+    let refused = |_| WorkloadError::Refused { name: name.to_owned() };
+    let model = W::open(&bytemuck::cast_slice(&words)[..pack.len()]).map_err(refused)?;
+    let mut state = W::power_on(&model);
+    let mut hashes = Vec::with_capacity(frames.len());
+    for frame in frames {
+        W::load(&model, &mut state, bytemuck::cast_slice(frame));
+        W::step(&model, &mut state);
+        let mut digest = Digest::default();
+        W::output(&model, &state, &mut digest);
+        hashes.push(digest.value());
+    }
+    Ok(Prepared { pack_name, pack, input, hashes })
+}
+
+/// Packs are used in place and need their alignment on the host as in flash.
+fn aligned(pack: &[u8]) -> Vec<u128> {
+    let mut words = vec![0u128; pack.len().div_ceil(16)];
+    bytemuck::cast_slice_mut(&mut words)[..pack.len()].copy_from_slice(pack);
+    words
+}

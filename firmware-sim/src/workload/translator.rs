@@ -1,0 +1,111 @@
+//! Packs and input of the translators: written by the host crate, of the shape that training gives by default, with seeded
+//! stable dynamics. Cost depends on the shape alone, so nothing has to be trained to measure it.
+
+use kinesic_host::clip::Clip;
+use kinesic_host::pack::Provenance;
+use kinesic_host::rig::Rig;
+use kinesic_host::translate::{BankModel, TimingModel, TranslatorModel};
+use kinesic_workloads::translator::{JOINTS, PerJoint, WholeBody};
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
+
+use super::{Prepared, WorkloadError, on_host};
+use crate::made::{self, FRAME_RATE};
+
+const SEED: u64 = 3;
+const ORDER: usize = 40;
+const DRIVES: usize = 8;
+const CHANNELS: usize = 3 * JOINTS;
+
+pub fn per_joint(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
+    let mut random = ChaCha8Rng::seed_from_u64(SEED);
+    let mut block = || -> [f64; 16] {
+        let [a, b, c, d] = stable(&mut random);
+        let mut block: [f64; 16] = std::array::from_fn(|_| random.random_range(-0.05..0.05));
+        block[..4].copy_from_slice(&[a, b, c, d]);
+        // Output columns are in metres.
+        block[10..].iter_mut().for_each(|c| *c *= 0.05);
+        block
+    };
+    let bank = (0..JOINTS).map(|_| (0..ORDER / 2).map(|_| block()).collect()).collect();
+    let (pack, frames) = pack(BankModel::PerJoint(bank), Vec::new(), frames);
+    on_host::<PerJoint>(name, "translator.kin", pack, &frames)
+}
+
+pub fn whole_body(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
+    let mut random = ChaCha8Rng::seed_from_u64(SEED);
+    let transition = (0..ORDER / 2).map(|_| stable(&mut random)).collect();
+    let mut matrix = |rows: usize, columns: usize, size: f64| -> Vec<f64> {
+        (0..rows * columns).map(|_| random.random_range(-size..size)).collect()
+    };
+    let bank = BankModel::WholeBody {
+        project: matrix(DRIVES, CHANNELS, 0.2),
+        transition,
+        input: matrix(ORDER, DRIVES, 0.1),
+        output: matrix(CHANNELS, ORDER + DRIVES, 0.002),
+    };
+    let states = matrix(1, ORDER + DRIVES, 0.01);
+    let (pack, frames) = pack(bank, states, frames);
+    on_host::<WholeBody>(name, "translator-body.kin", pack, &frames)
+}
+
+/// A rotation-scaling block with poles inside the unit circle.
+fn stable(random: &mut ChaCha8Rng) -> [f64; 4] {
+    let (radius, angle) = (random.random_range(0.3..0.97), random.random_range(0.01..1.5));
+    let (re, im) = (radius * libm::cos(angle), radius * libm::sin(angle));
+    [re, -im, im, re]
+}
+
+/// The pack around a bank, and the frames of a made walk.
+fn pack(bank: BankModel, timing_states: Vec<f64>, frames: usize) -> (Vec<u8>, Vec<Vec<f32>>) {
+    let rig = made::rig();
+    let clip = made::walk(frames, SEED);
+    let (mean, deviation) = moments(&rig, &clip);
+    let mut direct = vec![0.0; 9 * JOINTS];
+    for (channel, deviation) in deviation.iter().enumerate() {
+        direct[channel / 3 * 9 + channel % 3 * 4] = 0.9 * deviation;
+    }
+    let model = TranslatorModel {
+        style: "made".to_owned(),
+        frame_rate: FRAME_RATE,
+        bias: mean.clone(),
+        inverse_deviation: deviation.iter().map(|s| if *s > 1e-6 { 1.0 / s } else { 0.0 }).collect(),
+        mean,
+        direct,
+        bank,
+        timing: TimingModel { bias: 0.1, range: [-1.0, 1.0], input: vec![0.002; CHANNELS], states: timing_states },
+        strength: [0.0, 1.5],
+    };
+    let provenance = Provenance { tool: "kinesic-firmware-sim".to_owned(), seed: SEED, ..Provenance::default() };
+    (model.pack(&rig, &provenance), numbers(&rig, &clip, JOINTS))
+}
+
+/// Mean and deviation of each heading-local channel; the root's row is its travel and height.
+fn moments(rig: &Rig, clip: &Clip) -> (Vec<f64>, Vec<f64>) {
+    let locals = rig.locals(&rig.poses(clip));
+    let frames = locals.frames() as f64;
+    let mut mean = vec![0.0; CHANNELS];
+    let mut square = vec![0.0; CHANNELS];
+    for (row, travel) in locals.positions.chunks_exact(CHANNELS).zip(&locals.travel) {
+        for (channel, value) in row.iter().enumerate() {
+            let value = match channel {
+                0 => travel[0],
+                2 => travel[1],
+                _ => *value,
+            };
+            mean[channel] += value / frames;
+            square[channel] += value * value / frames;
+        }
+    }
+    let deviation = mean.iter().zip(&square).map(|(mean, square)| (square - mean * mean).max(0.0).sqrt()).collect();
+    (mean, deviation)
+}
+
+/// The frames of a clip as the workload takes them.
+pub fn numbers(rig: &Rig, clip: &Clip, joints: usize) -> Vec<Vec<f32>> {
+    let pose = |pose: &kinesic::Pose<{ kinesic_host::rig::MAX_JOINTS }>| -> Vec<f32> {
+        let rotations = pose.rotations.iter().take(joints).flat_map(|rotation| rotation.coords.iter().copied());
+        pose.root.iter().copied().chain(rotations).collect()
+    };
+    rig.poses(clip).iter().map(pose).collect()
+}
