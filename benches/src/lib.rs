@@ -1,0 +1,1 @@
+//! Host benches of the device's engines; see `benches/`.

@@ -1,0 +1,102 @@
+//! The model file: golden packs load for ever, damaged ones never.
+
+mod common;
+
+use std::path::Path;
+
+use kinesic::{LoadError, Pack, Pose, Translator, TranslatorState};
+use kinesic_host::pack::PackFile;
+use kinesic_host::translate::FormChoice;
+
+type Device<'a> = Translator<'a, 19, 1024>;
+
+/// One file of every kind for every version of the format that was released. Make a new one with
+/// `KINESIC_GOLDEN=write cargo test --release -p kinesic-tests --test packs`, and never overwrite an old one: see
+/// `docs/pack.md`.
+const GOLDEN: [(&str, FormChoice, usize); 2] =
+    [("translator-whole-body.kin", FormChoice::WholeBody, 24), ("translator-per-joint.kin", FormChoice::PerJoint, 12)];
+
+fn golden(name: &str) -> PackFile {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("packs/v1").join(name);
+    PackFile::read(&path).unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[test]
+fn golden_packs_load_and_step() {
+    for (name, form, order) in GOLDEN {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("packs/v1").join(name);
+        if std::env::var("KINESIC_GOLDEN").as_deref() == Ok("write") && !path.exists() {
+            std::fs::write(&path, common::pack(form, order).bytes()).unwrap();
+        }
+        let file = golden(name);
+        let pack = file.pack().unwrap();
+        let translator = Device::load(&pack).unwrap();
+        let mut state = TranslatorState::new();
+        let mut styled = Pose::identity();
+        let rig = common::rig();
+        for pose in rig.poses(&common::neutral(3)) {
+            let mut source = Pose::identity();
+            source.root = pose.root;
+            source.rotations.copy_from_slice(&pose.rotations[..19]);
+            translator.step(&mut state, &source, &mut styled);
+            assert!(styled.rotations.iter().all(|q| (q.norm() - 1.0).abs() < 1e-5), "{name}");
+        }
+        assert!(styled.root.norm() < 20.0, "{name}: {}", styled.root);
+    }
+}
+
+#[test]
+fn a_pack_truncated_at_any_byte_is_refused() {
+    for (name, ..) in GOLDEN {
+        let file = golden(name);
+        for len in 0..file.bytes().len() {
+            assert!(Pack::load(&file.bytes()[..len]).is_err(), "{name} cut to {len} bytes loads");
+        }
+        let mut longer = file.bytes().to_vec();
+        longer.push(0);
+        assert!(PackFile::from_bytes(&longer).pack().is_err());
+    }
+}
+
+#[test]
+fn a_pack_with_any_bit_flipped_is_refused() {
+    for (name, ..) in GOLDEN {
+        let mut file = golden(name);
+        let bytes = file.bytes().to_vec();
+        for bit in 0..8 * bytes.len() {
+            let mut damaged = file.bytes_mut();
+            damaged[bit / 8] ^= 1 << (bit % 8);
+            let refused = Pack::load(damaged).is_err();
+            damaged = file.bytes_mut();
+            damaged[bit / 8] ^= 1 << (bit % 8);
+            assert!(refused, "{name} with bit {bit} flipped loads");
+        }
+        assert_eq!(file.bytes(), bytes);
+    }
+}
+
+#[test]
+fn refusals_say_why() {
+    let file = golden(GOLDEN[0].0);
+    let changed = |change: &dyn Fn(&mut Vec<u8>)| {
+        let mut bytes = file.bytes().to_vec();
+        change(&mut bytes);
+        PackFile::from_bytes(&bytes).pack().unwrap_err()
+    };
+    assert_eq!(changed(&|b| b.truncate(7)), LoadError::TooShort { found: 7, expected: 20 });
+    assert_eq!(changed(&|b| b[0] = b'X'), LoadError::NotAPack { found: *b"XNSC" });
+    assert_eq!(changed(&|b| b[4] = 9), LoadError::Version { found: 9, expected: 1 });
+    assert_eq!(changed(&|b| b[7] = 9), LoadError::Kind { found: 0x0901 });
+    assert!(matches!(changed(&|b| b.truncate(b.len() - 16)), LoadError::Length { .. }));
+    assert!(matches!(changed(&|b| *b.last_mut().unwrap() ^= 1), LoadError::Checksum { .. }));
+    let mut shifted = vec![0; 1];
+    shifted.extend_from_slice(file.bytes());
+    let shifted = PackFile::from_bytes(&shifted);
+    assert_eq!(Pack::load(&shifted.bytes()[1..]).unwrap_err(), LoadError::Misaligned { off_by: 1 });
+
+    let pack = file.pack().unwrap();
+    let small = Translator::<18, 1024>::load(&pack).unwrap_err();
+    assert_eq!(small, LoadError::Capacity { parameter: "JOINTS", found: 19, capacity: 18 });
+    let small = Translator::<19, 8>::load(&pack).unwrap_err();
+    assert!(matches!(small, LoadError::Capacity { parameter: "STATES", capacity: 8, .. }));
+}
