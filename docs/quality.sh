@@ -1,0 +1,138 @@
+#!/usr/bin/env bash
+# Prints the tables of docs/quality.md. About four minutes on two cores. Needs the real clips (KINESIC_DATA).
+# usage: docs/quality.sh [xia|swap|child|people]...   (default: all)
+set -euo pipefail
+cd "$(dirname "$0")/.."
+data=$(realpath "${KINESIC_DATA:-../shared/data}")
+cargo build --release --locked -q -p kinesic-host
+kinesic=${CARGO_TARGET_DIR:-target}/release/kinesic
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# First occurrence of a number in the JSON of the command: the mean over the pairs.
+value() { grep -m1 "\"$2\":" "$1" | tr -dc '0-9.-'; }
+word() { grep -m1 "\"$2\":" "$1" | cut -d'"' -f4; }
+number() { printf ' %.1f |' "$(value "$1" "$2")"; }
+
+# Adds numbers of a file to the record that means are taken of.
+record() { local file=$1 key; shift; for key in "$@"; do printf '%s ' "$(value "$file" "$key")" >>"$work/all"; done; }
+end_record() { echo >>"$work/all"; }
+
+# xia TAKE_TO_TRAIN TAKE_TO_TEST
+xia() {
+    local clips=$data/xia style form options
+    echo
+    echo "Trained on take $1, tested on take $2; closed ends, cm"
+    echo
+    echo "| style | identity | offset | affine | per joint | whole body | **chosen** | floor | chosen: alignment, model |"
+    echo "|---|---|---|---|---|---|---|---|---|"
+    : >"$work/all"
+    for style in angry childlike depressed old proud sexy strutting; do
+        for form in per-joint whole-body auto in-step; do
+            options="--form $form"
+            [ $form = in-step ] && options="--align in-step"
+            # shellcheck disable=SC2086
+            "$kinesic" train translate --pair "$clips/neutral_01_$1.bvh" "$clips/${style}_01_$1.bvh" $options \
+                --out "$work/$form.kin" --json >"$work/$form.train"
+            "$kinesic" eval translate "$work/$form.kin" --json \
+                --pair "$clips/neutral_01_$2.bvh" "$clips/${style}_01_$2.bvh" >"$work/$form"
+        done
+        # Doing nothing to one take and comparing with the other: what two takes of a style differ by.
+        "$kinesic" eval translate "$work/auto.kin" --json \
+            --pair "$clips/${style}_01_$1.bvh" "$clips/${style}_01_$2.bvh" >"$work/floor"
+        record "$work/auto" identity_cm offset_cm affine_cm
+        for form in per-joint whole-body auto; do record "$work/$form" error_cm; done
+        record "$work/floor" identity_cm
+        record "$work/auto" open_identity_cm open_offset_cm open_affine_cm open_error_cm
+        record "$work/in-step" error_cm open_error_cm
+        record "$work/floor" open_identity_cm
+        end_record
+        printf '| %s |' "$style"
+        for key in identity_cm offset_cm affine_cm; do number "$work/auto" $key; done
+        for form in per-joint whole-body; do number "$work/$form" error_cm; done
+        printf ' **%.1f** |' "$(value "$work/auto" error_cm)"
+        number "$work/floor" identity_cm
+        echo " $(word "$work/auto.train" alignment), $(word "$work/auto.train" model) |"
+    done
+    awk '{ for (i = 1; i <= NF; i++) sum[i] += $i / 7 }
+        END {
+            printf "| **mean** | %.2f | %.2f | %.2f | %.2f | %.2f | **%.2f** | %.2f | |\n\n",
+                sum[1], sum[2], sum[3], sum[4], sum[5], sum[6], sum[7]
+            print "Means over the 7 styles with both measures, cm\n"
+            print "| ends | identity | offset | affine | chosen | `--align in-step` | floor |\n|---|---|---|---|---|---|---|"
+            printf "| closed | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f |\n", sum[1], sum[2], sum[3], sum[6], sum[12], sum[7]
+            printf "| open | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f |\n", sum[8], sum[9], sum[10], sum[11], sum[13], sum[14]
+        }' "$work/all"
+}
+
+# child PERSON: trained on everybody else
+child() {
+    local table=(--pairs "$data/pairs.tsv" --where style=child)
+    "$kinesic" train translate "${table[@]}" --where "neutral!~$1" --out "$work/child.kin" --json >"$work/train"
+    "$kinesic" eval translate "$work/child.kin" "${table[@]}" --where "neutral~$1" --json >"$work/eval"
+}
+
+child_table() {
+    local table=(--pairs "$data/pairs.tsv" --where style=child)
+    child p734
+    echo
+    echo "Adult -> child: trained on six pairs of people (75 pairs of clips), tested on p734 -> p723; closed ends, cm"
+    echo "Chosen: $(word "$work/train" alignment), $(word "$work/train" model)"
+    echo
+    echo "| action | identity | offset | affine | **chosen** | other children |"
+    echo "|---|---|---|---|---|---|"
+    local action key child others
+    : >"$work/all"
+    for action in $(grep -o 'p734_[^/"]*\.csv' "$work/eval" | sort -u | sed 's/p734_//; s/\.csv//'); do
+        "$kinesic" eval translate "$work/child.kin" "${table[@]}" --where neutral~p734 --where "content=$action" --json >"$work/one"
+        others=()
+        for child in p103 p106 p169 p290 p337 p644; do
+            [ -f "$data/kindergator/child/${child}_$action.csv" ] || continue
+            others+=(--pair "$data/kindergator/child/${child}_$action.csv" "$data/kindergator/child/p723_$action.csv")
+        done
+        "$kinesic" eval translate "$work/child.kin" "${others[@]}" --json >"$work/others"
+        printf '| %s |' "$action"
+        for key in identity_cm offset_cm affine_cm; do number "$work/one" $key; done
+        printf ' **%.1f** |' "$(value "$work/one" error_cm)"
+        number "$work/others" identity_cm
+        echo
+        record "$work/one" identity_cm offset_cm affine_cm error_cm
+        record "$work/others" identity_cm
+        end_record
+    done
+    awk '{ for (i = 1; i <= 5; i++) sum[i] += $i }
+        END { printf "| **mean** | %.2f | %.2f | %.2f | **%.2f** | %.2f |\n", sum[1] / NR, sum[2] / NR, sum[3] / NR, sum[4] / NR, sum[5] / NR }' "$work/all"
+}
+
+people_table() {
+    echo
+    echo "Every pair of people held back in turn; closed ends, cm"
+    echo
+    echo "| held back | identity | offset | affine | chosen | model |"
+    echo "|---|---|---|---|---|---|"
+    : >"$work/all"
+    for person in p565 p577 p604 p734 p876 p934 p970; do
+        child $person
+        printf '| %s |' $person
+        for key in identity_cm offset_cm affine_cm error_cm; do
+            number "$work/eval" $key
+            record "$work/eval" $key
+        done
+        end_record
+        echo " $(word "$work/train" model) |"
+    done
+    awk '{ for (i = 1; i <= 4; i++) sum[i] += $i / 7 }
+        END { printf "| **mean** | %.2f | %.2f | %.2f | %.2f | |\n", sum[1], sum[2], sum[3], sum[4] }' "$work/all"
+}
+
+for part in "${@:-xia swap child people}"; do
+    for table in $part; do
+        case $table in
+        xia) xia 000 001 ;;
+        swap) xia 001 000 ;;
+        child) child_table ;;
+        people) people_table ;;
+        *) echo "no table $table" >&2; exit 2 ;;
+        esac
+    done
+done
