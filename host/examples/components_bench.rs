@@ -2,6 +2,7 @@
 //! `cargo run --release -p kinesic-host --example components_bench -- TABLE [FOLDER]`, where `TABLE` is one of
 //!
 //! - `factor FOLDER`: factorises ten clips, and writes matrices and supports for `benches/peers/components.py`
+//! - `penalty`: density, error and objective over the sparsity weight
 //! - `explained`: explained content against the number of components used
 //! - `transfer`: distances, bones and jerk of sparse components and PCA, with and without bone and smoothness terms
 //! - `count`: the automatic number of components beside held-out errors
@@ -18,7 +19,7 @@ use faer::{Mat, MatRef};
 use kinesic_host::clip::ReadOptions;
 use kinesic_host::components::{
     FRAME_RATE, Factors, Motion, Objective, Optimiser, Sparsity, Weights, bone_error, bones, choose, content_distance,
-    gram, jerk, learn, noise, pca, sparse, style_distance,
+    gram, jerk, learn, noise, pca, refit, sparse, style_distance,
 };
 use kinesic_host::prepare::Source;
 use kinesic_host::rig::Rig;
@@ -56,11 +57,12 @@ fn main() -> Fallible<()> {
     let folder = arguments.get(1).map(PathBuf::from);
     match (arguments.first().map(String::as_str), folder) {
         (Some("factor"), Some(folder)) => factor(&folder),
+        (Some("penalty"), _) => penalty(),
         (Some("explained"), _) => explained(),
         (Some("transfer"), _) => transfer(),
         (Some("count"), _) => count(),
         (Some("learn"), Some(folder)) => learning(&folder),
-        _ => Err("expected: factor FOLDER, explained, transfer, count or learn FOLDER".into()),
+        _ => Err("expected: factor FOLDER, penalty, explained, transfer, count or learn FOLDER".into()),
     }
 }
 
@@ -113,14 +115,7 @@ fn factor(folder: &Path) -> Fallible<()> {
         for count in COUNTS {
             for density in DENSITIES {
                 let sparsity = Sparsity { density: Some(density), ..Sparsity::default() };
-                // The median of five: other work on the machine does not decide.
-                let mut times = [0.0; 5];
-                for time in &mut times {
-                    let start = Instant::now();
-                    std::hint::black_box(sparse(m, count, &sparsity));
-                    *time = 1e3 * start.elapsed().as_secs_f64();
-                }
-                times.sort_by(f64::total_cmp);
+                let time = processor_seconds(|| drop(sparse(m, count, &sparsity)))?;
                 let found = sparse(m, count, &sparsity);
                 let last = found.history.last().copied().unwrap_or_default();
                 let thinned = strongest(m, count, density);
@@ -128,7 +123,7 @@ fn factor(folder: &Path) -> Fallible<()> {
                     let file = format!("{method}-{index}-{count}-{density}.csv");
                     write_matrix(&folder.join(&file), factors.components.transpose())?;
                     let (time, objective, sweeps) =
-                        if method == "kinesic" { (times[2], last, found.history.len() - 1) } else { (0.0, 0.0, 0) };
+                        if method == "kinesic" { (1e3 * time, last, found.history.len() - 1) } else { (0.0, 0.0, 0) };
                     writeln!(
                         lines,
                         "{index},{count},{method},{},{file},{time:.3},{objective:.5},{sweeps}",
@@ -140,6 +135,62 @@ fn factor(folder: &Path) -> Fallible<()> {
         eprintln!("{index} {name}: {} x {}", motion.frames(), motion.channels());
     }
     fs::write(folder.join("ours.csv"), lines)?;
+    Ok(())
+}
+
+/// Processor time of one call, s, over as many as take half a second: other work on the machine does not count. Linux only,
+/// where it is counted in ticks of some milliseconds.
+fn processor_seconds(mut work: impl FnMut()) -> Fallible<f64> {
+    let used = || -> Fallible<f64> {
+        let line = fs::read_to_string("/proc/thread-self/schedstat")?;
+        let nanoseconds = line.split_whitespace().next().ok_or("/proc/thread-self/schedstat is empty")?;
+        Ok(1e-9 * nanoseconds.parse::<f64>()?)
+    };
+    let (begin, mut calls) = (used()?, 0);
+    loop {
+        work();
+        calls += 1;
+        let seconds = used()? - begin;
+        if seconds > 0.5 {
+            return Ok(seconds / f64::from(calls));
+        }
+    }
+}
+
+/// What the sparsity weight alone does: no pruning to a wanted density.
+fn penalty() -> Fallible<()> {
+    const PENALTIES: [f64; 8] = [0.0, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0];
+    println!(
+        "| K | sparsity weight | density | error, refitted | PCA's strongest groups at that density, refitted | objective, start | objective, end | sweeps | ms |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|");
+    let motions = CLIPS.iter().map(|name| Ok(own(name)?.1)).collect::<Fallible<Vec<Motion>>>()?;
+    for count in COUNTS {
+        for penalty in PENALTIES {
+            let mut sums = [0.0; 7];
+            for motion in &motions {
+                let m = motion.values.as_ref();
+                let sparsity = Sparsity { penalty, density: None, ..Sparsity::default() };
+                let time = processor_seconds(|| drop(sparse(m, count, &sparsity)))?;
+                let found = sparse(m, count, &sparsity);
+                let density = found.factors.density();
+                let row = [
+                    density,
+                    found.factors.error(m),
+                    refit(m, &strongest(m, count, density)).error(m),
+                    found.history[0],
+                    found.history.last().copied().unwrap_or_default(),
+                    (found.history.len() - 1) as f64,
+                    1e3 * time,
+                ];
+                sums.iter_mut().zip(row).for_each(|(sum, x)| *sum += x / motions.len() as f64);
+            }
+            let [density, error, principal, first, last, sweeps, time] = sums;
+            println!(
+                "| {count} | {penalty} | {density:.3} | {error:.4} | {principal:.4} | {first:.3} | {last:.3} | {sweeps:.0} | {time:.1} |"
+            );
+        }
+    }
     Ok(())
 }
 
@@ -303,17 +354,13 @@ fn learning(folder: &Path) -> Fallible<()> {
     });
     write_matrix(&folder.join("bones.csv"), table.as_ref())?;
     let fixed = Optimiser { max_steps: 500, threshold: -1.0, ..Optimiser::default() };
-    let mut times = [0.0; 5];
-    let mut last = 0.0;
-    for time in &mut times {
-        let begin = Instant::now();
+    let mut last = f64::NAN;
+    let seconds = processor_seconds(|| {
         let learned = learn(&objective, start.clone(), &fixed);
-        *time = begin.elapsed().as_secs_f64();
-        last = learned.history.last().copied().unwrap_or_default();
         assert_eq!(learned.history.len(), 501);
-    }
-    times.sort_by(f64::total_cmp);
-    println!("kinesic,{},{last}", times[2]);
+        last = learned.history[500];
+    })?;
+    println!("kinesic,{seconds},{last}");
     Ok(())
 }
 

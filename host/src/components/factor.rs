@@ -179,7 +179,7 @@ pub(super) fn column_mut(m: &mut Mat<f64>, k: usize) -> &mut [f64] {
     m.col_as_slice_mut(k)
 }
 
-fn groups(column: &[f64]) -> impl Iterator<Item = [f64; 3]> {
+pub(super) fn groups(column: &[f64]) -> impl Iterator<Item = [f64; 3]> {
     column.as_chunks::<3>().0.iter().copied()
 }
 

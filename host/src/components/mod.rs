@@ -5,7 +5,7 @@
 //! | `matrix` | a clip as a standardised matrix |
 //! | `factor` | `M ~ W C`: the penalised objective and its exact block updates |
 //! | `gather`, [`pca()`] | two starts: joints gathered into components, principal components (also the baseline) |
-//! | `prune`, `refit` | fewer joints for the same error; least squares on a support |
+//! | `prune`, `refit`, `small` | fewer joints for the same error; least squares on a support; its small systems |
 //! | [`sparse()`] | the sparse factorisation as a whole |
 //! | `count` | how many components |
 //! | `objective`, `learn` | what style learning minimises, with its gradient; Adam from seeded noise |
@@ -25,6 +25,7 @@ mod pca;
 mod play;
 mod prune;
 mod refit;
+mod small;
 mod sparse;
 mod train;
 
@@ -39,7 +40,7 @@ pub use model::ComponentsModel;
 pub use objective::{Bone, Objective, Terms, Weights, bones, gram};
 pub use pca::pca;
 pub use play::{HostComponents, MAX_COMPONENTS, Settings, play, play_stored};
-pub use prune::{exchange, prune};
+pub use prune::prune;
 pub use refit::refit;
 pub use sparse::{Sparse, Sparsity, sparse};
 pub use train::{TradeOff, TrainError, TrainOptions, Trained, composed, trade_off, train};

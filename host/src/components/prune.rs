@@ -1,12 +1,16 @@
 //! Fewer joints for the same error: backward elimination of joint groups.
 
-use faer::{Mat, MatRef};
+use faer::MatRef;
 
 use super::factor::{Factors, column, column_mut, product};
-use super::refit::{rounds, solve};
+use super::refit::{Fit, Scatter};
+use super::small::{Cholesky, dot};
 
 /// Groups that leave at once, as a share of those that are left.
 const SHARE: f64 = 0.08;
+
+/// Damping of the systems that say what a group is worth.
+const DAMPING: f64 = 1e-5;
 
 /// Takes away the joint groups whose loss costs least, a few at a time with least squares in between, until `density` is
 /// reached.
@@ -14,37 +18,44 @@ const SHARE: f64 = 0.08;
 /// The loss of group `(k, i)` at fixed weights is `|C_ki|^2 / [(W_S' W_S)^-1]_kk`, `S` the components that move joint `i`
 /// (optimal brain surgeon, Hassibi 1993): what the other components cannot take over.
 pub fn prune(motion: MatRef<'_, f64>, factors: &Factors, density: f64) -> Factors {
-    let mut pruned = factors.clone();
-    let all = pruned.count() * pruned.components.nrows() / 3;
-    let wanted = (density * all as f64).round() as usize;
+    let scatter = Scatter::new(motion);
+    let mut fit = Fit::new(&scatter, &factors.components);
+    let all = factors.count() * motion.ncols() / 3;
+    thin(&mut fit, (density * all as f64).round() as usize);
+    fit.factors()
+}
+
+/// Prunes to `wanted` joint groups.
+pub(super) fn thin(fit: &mut Fit, wanted: usize) {
     loop {
-        let mut losses = losses(&pruned);
+        let mut losses = losses(fit);
         let surplus = losses.len().saturating_sub(wanted);
         if surplus == 0 {
-            return pruned;
+            return;
         }
         let leave = ((SHARE * losses.len() as f64).ceil() as usize).min(surplus);
         losses.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         for (_, [k, joint]) in losses.iter().take(leave) {
-            column_mut(&mut pruned.components, *k)[3 * joint..][..3].fill(0.0);
+            column_mut(&mut fit.components, *k)[3 * joint..][..3].fill(0.0);
         }
-        rounds(motion, &mut pruned, 2);
+        fit.rounds(2);
     }
 }
 
 /// What every joint group that is not zero is worth, and which it is: `[component, joint]`.
-fn losses(factors: &Factors) -> Vec<(f64, [usize; 2])> {
-    let inner = product(factors.weights.transpose(), factors.weights.as_ref());
-    let support = factors.support();
+fn losses(fit: &Fit) -> Vec<(f64, [usize; 2])> {
+    let mut cholesky = Cholesky::default();
+    let mut unit = Vec::new();
     let mut losses = Vec::new();
-    for joint in 0..factors.components.nrows() / 3 {
-        let active: Vec<usize> = (0..support.len()).filter(|k| support[*k][joint]).collect();
-        let gram = Mat::from_fn(active.len(), active.len(), |a, b| inner[(active[a], active[b])]);
-        let Some(inverse) = solve(gram, &Mat::identity(active.len(), active.len())) else { continue };
-        for (a, k) in active.iter().enumerate() {
-            let group = &column(&factors.components, *k)[3 * joint..][..3];
-            let squares: f64 = group.iter().map(|c| c * c).sum();
-            losses.push((squares / inverse[(a, a)].max(1e-300), [*k, joint]));
+    for (joint, movers) in fit.movers().iter().enumerate() {
+        cholesky.factorise(movers.len(), DAMPING, |a, b| fit.inner[(movers[a], movers[b])]);
+        for (a, k) in movers.iter().enumerate() {
+            unit.clear();
+            unit.resize(movers.len(), 0.0);
+            unit[a] = 1.0;
+            cholesky.forward(&mut unit);
+            let group = &column(&fit.components, *k)[3 * joint..][..3];
+            losses.push((dot(group, group) / dot(&unit, &unit).max(f64::MIN_POSITIVE), [*k, joint]));
         }
     }
     losses
@@ -52,55 +63,51 @@ fn losses(factors: &Factors) -> Vec<(f64, [usize; 2])> {
 
 /// Moves joint groups to where they are worth more, at the same density: grow by a share, fit, prune back; as long as the
 /// error falls.
-pub fn exchange(motion: MatRef<'_, f64>, factors: &Factors, count: usize) -> Factors {
-    let density = factors.density();
-    let mut best = factors.clone();
-    let mut lowest = best.error(motion);
+pub(super) fn exchange(fit: &mut Fit, count: usize) {
+    let mut lowest = fit.error();
     let mut share = 0.2;
     for _ in 0..count {
-        let mut grown = best.clone();
-        grow(motion, &mut grown, share);
-        rounds(motion, &mut grown, 4);
-        let mut trial = prune(motion, &grown, density);
-        rounds(motion, &mut trial, 4);
-        let error = trial.error(motion);
+        let mut trial = fit.clone();
+        let held = grow(&mut trial, share);
+        trial.rounds(4);
+        thin(&mut trial, held);
+        trial.rounds(4);
+        let error = trial.error();
         if error < lowest {
-            (best, lowest) = (trial, error);
+            (*fit, lowest) = (trial, error);
         } else {
             share *= 0.5;
         }
     }
-    best
 }
 
-/// Adds the groups that would lower the error most at fixed weights.
-fn grow(motion: MatRef<'_, f64>, factors: &mut Factors, share: f64) {
-    let inner = product(factors.weights.as_ref().transpose(), factors.weights.as_ref());
-    let rest = motion - factors.product();
-    let open = product(rest.as_ref().transpose(), factors.weights.as_ref());
-    let support = factors.support();
+/// Adds the groups that would lower the error most at fixed weights; returns how many there were before.
+fn grow(fit: &mut Fit, share: f64) -> usize {
+    // `(M - W C)' W`, [3N x K].
+    let open = &fit.cross - product(fit.components.as_ref(), fit.inner.as_ref());
+    let mut cholesky = Cholesky::default();
+    let mut shadow = Vec::new();
     let mut gains = Vec::new();
     let mut held = 0;
-    for joint in 0..factors.components.nrows() / 3 {
-        let active: Vec<usize> = (0..support.len()).filter(|k| support[*k][joint]).collect();
-        let idle: Vec<usize> = (0..support.len()).filter(|k| !support[*k][joint]).collect();
-        held += active.len();
-        let gram = Mat::from_fn(active.len(), active.len(), |a, b| inner[(active[a], active[b])]);
-        let right = Mat::from_fn(active.len(), idle.len(), |a, b| inner[(active[a], idle[b])]);
-        let shadow = solve(gram, &right);
-        for (b, k) in idle.iter().enumerate() {
-            let taken: f64 =
-                shadow.as_ref().map_or(0.0, |s| (0..active.len()).map(|a| s[(a, b)] * right[(a, b)]).sum());
-            let free = inner[(*k, *k)] - taken;
-            let step: [f64; 3] = std::array::from_fn(|c| open[(3 * joint + c, *k)]);
-            let squares: f64 = step.iter().map(|s| s * s).sum();
-            if free > 1e-6 * inner[(*k, *k)] && squares > 0.0 {
-                gains.push((squares / free, [*k, joint], step.map(|s| s / free)));
+    for (joint, movers) in fit.movers().iter().enumerate() {
+        held += movers.len();
+        cholesky.factorise(movers.len(), DAMPING, |a, b| fit.inner[(movers[a], movers[b])]);
+        for k in (0..fit.inner.ncols()).filter(|k| !movers.contains(k)) {
+            // What the joint's own components already cover of the candidate.
+            shadow.clear();
+            shadow.extend(movers.iter().map(|a| fit.inner[(*a, k)]));
+            cholesky.forward(&mut shadow);
+            let free = fit.inner[(k, k)] - dot(&shadow, &shadow);
+            let step = &column(&open, k)[3 * joint..][..3];
+            let squares = dot(step, step);
+            if free > 1e-6 * fit.inner[(k, k)] && squares > 0.0 {
+                gains.push((squares / free, [k, joint], [step[0] / free, step[1] / free, step[2] / free]));
             }
         }
     }
     gains.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
     for (_, [k, joint], step) in gains.iter().take((share * held as f64).ceil() as usize) {
-        column_mut(&mut factors.components, *k)[3 * joint..][..3].copy_from_slice(step);
+        column_mut(&mut fit.components, *k)[3 * joint..][..3].copy_from_slice(step);
     }
+    held
 }

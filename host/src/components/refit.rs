@@ -3,74 +3,153 @@
 use faer::linalg::solvers::Solve;
 use faer::{Mat, MatRef, Side};
 
-use super::factor::{Factors, column, column_mut, product};
+use super::factor::{Factors, column, column_mut, groups, product};
+use super::small::Cholesky;
 
 /// Rounds of least squares for `C` and for `W` in turn.
-const ROUNDS: usize = 30;
+pub(super) const ROUNDS: usize = 30;
 
 /// A round that lowers the squared error by less than this share of it is the last.
 const TOLERANCE: f64 = 1e-3;
 
+/// Share of the mean diagonal that is added to every system.
+const DAMPING: f64 = 1e-5;
+
 /// Minimises `|M - W C|^2` over `W` and over those joint groups of `C` that are not zero, in turn.
 ///
-/// Cost of a round: `4 F 3N K + F K^2` multiply-adds and a Cholesky factorisation a joint of the size of its components.
+/// Cost: `F (3N)^2` multiply-adds once; a round costs `(3N)^2 K + 3 3N K^2` and a Cholesky factorisation a joint of the size
+/// of its components, however long the motion is.
 pub fn refit(motion: MatRef<'_, f64>, factors: &Factors) -> Factors {
-    let mut refitted = factors.clone();
-    rounds(motion, &mut refitted, ROUNDS);
-    refitted.normalise();
-    refitted
+    let scatter = Scatter::new(motion);
+    let mut fit = Fit::new(&scatter, &factors.components);
+    fit.rounds(ROUNDS);
+    fit.factors()
 }
 
-/// Up to `count` rounds of least squares.
-pub(super) fn rounds(motion: MatRef<'_, f64>, factors: &mut Factors, count: usize) {
-    let support = factors.support();
-    let total = motion.squared_norm_l2();
-    let mut before = f64::INFINITY;
-    for _ in 0..count {
-        fit_components(motion, &support, factors);
-        let error = fit_weights(motion, total, factors);
-        if before - error <= TOLERANCE * before.min(total) {
-            break;
-        }
-        before = error;
+/// All that least squares needs of a motion.
+pub(super) struct Scatter<'a> {
+    motion: MatRef<'a, f64>,
+    /// `M'M`, `[3N x 3N]`.
+    square: Mat<f64>,
+    /// `|M|^2`.
+    total: f64,
+}
+
+impl<'a> Scatter<'a> {
+    pub fn new(motion: MatRef<'a, f64>) -> Self {
+        Self { motion, square: product(motion.transpose(), motion), total: motion.squared_norm_l2() }
     }
-    fit_components(motion, &support, factors);
 }
 
-/// For every joint: least squares on the weight columns of the components that move it.
-fn fit_components(motion: MatRef<'_, f64>, support: &[Vec<bool>], factors: &mut Factors) {
-    let inner = product(factors.weights.transpose(), factors.weights.as_ref());
-    let cross = product(factors.weights.transpose(), motion);
-    for joint in 0..factors.components.nrows() / 3 {
-        let active: Vec<usize> = (0..support.len()).filter(|k| support[*k][joint]).collect();
-        let gram = Mat::from_fn(active.len(), active.len(), |a, b| inner[(active[a], active[b])]);
-        let right = Mat::from_fn(active.len(), 3, |a, c| cross[(active[a], 3 * joint + c)]);
-        if let Some(solution) = solve(gram, &right) {
-            for (a, k) in active.iter().enumerate() {
-                (0..3).for_each(|c| column_mut(&mut factors.components, *k)[3 * joint + c] = solution[(a, c)]);
+/// `M ~ W C` with the weights that fit the components best, `W = M P`: they are never formed, only what is needed of them.
+#[derive(Clone)]
+pub(super) struct Fit<'a> {
+    scatter: &'a Scatter<'a>,
+    /// `C` transposed, `[3N x K]`. After a change, [`rounds`](Self::rounds) fits the rest to it.
+    pub components: Mat<f64>,
+    /// `P`, `[3N x K]`.
+    projection: Mat<f64>,
+    /// `W'W`, `[K x K]`.
+    pub inner: Mat<f64>,
+    /// `M'W`, `[3N x K]`.
+    pub cross: Mat<f64>,
+}
+
+impl<'a> Fit<'a> {
+    pub fn new(scatter: &'a Scatter<'a>, components: &Mat<f64>) -> Self {
+        let (channels, count) = (components.nrows(), components.ncols());
+        let mut fit = Self {
+            scatter,
+            components: components.clone(),
+            projection: Mat::zeros(channels, count),
+            inner: Mat::zeros(count, count),
+            cross: Mat::zeros(channels, count),
+        };
+        fit.fit_weights();
+        fit
+    }
+
+    /// Which components move a joint, `[joints]` of indices.
+    pub fn movers(&self) -> Vec<Vec<usize>> {
+        let mut movers = vec![Vec::new(); self.components.nrows() / 3];
+        for k in 0..self.components.ncols() {
+            for (movers, group) in movers.iter_mut().zip(groups(column(&self.components, k))) {
+                if group != [0.0; 3] {
+                    movers.push(k);
+                }
+            }
+        }
+        movers
+    }
+
+    /// Up to `count` rounds of least squares for `C` and for `W`, then once more for `C`.
+    pub fn rounds(&mut self, count: usize) {
+        let movers = self.movers();
+        let mut before = f64::INFINITY;
+        for _ in 0..count {
+            self.fit_components(&movers);
+            let error = self.fit_weights();
+            if before - error <= TOLERANCE * before.min(self.scatter.total) {
+                break;
+            }
+            before = error;
+        }
+        self.fit_components(&movers);
+    }
+
+    /// `|M - W C|^2`.
+    pub fn error(&self) -> f64 {
+        let outer = product(self.components.transpose(), self.components.as_ref());
+        let fitted = 2.0 * inner_product(&self.cross, &self.components) - inner_product(&self.inner, &outer);
+        (self.scatter.total - fitted).max(0.0)
+    }
+
+    /// The weights as a matrix, with the components, normalised.
+    pub fn factors(&self) -> Factors {
+        let weights = product(self.scatter.motion, self.projection.as_ref());
+        let mut factors = Factors { weights, components: self.components.clone() };
+        factors.normalise();
+        factors
+    }
+
+    /// For every joint: least squares on the weight columns of the components that move it.
+    fn fit_components(&mut self, movers: &[Vec<usize>]) {
+        let mut cholesky = Cholesky::default();
+        let mut right = Vec::new();
+        for (joint, movers) in movers.iter().enumerate() {
+            cholesky.factorise(movers.len(), DAMPING, |a, b| self.inner[(movers[a], movers[b])]);
+            for channel in 3 * joint..3 * joint + 3 {
+                right.clear();
+                right.extend(movers.iter().map(|k| self.cross[(channel, *k)]));
+                cholesky.solve(&mut right);
+                for (k, value) in movers.iter().zip(&right) {
+                    column_mut(&mut self.components, *k)[channel] = *value;
+                }
             }
         }
     }
-}
 
-/// `W = M C' (C C')^-1`; returns the squared error.
-fn fit_weights(motion: MatRef<'_, f64>, total: f64, factors: &mut Factors) -> f64 {
-    let outer = product(factors.components.transpose(), factors.components.as_ref());
-    let cross = product(motion, factors.components.as_ref());
-    if let Some(solution) = solve(outer, &cross.transpose().to_owned()) {
-        factors.weights = solution.transpose().to_owned();
+    /// `P = C' (C C')^-1`, and what follows from it; returns the squared error.
+    fn fit_weights(&mut self) -> f64 {
+        let outer = product(self.components.transpose(), self.components.as_ref());
+        if let Some(solution) = solve(outer, &self.components.transpose().to_owned()) {
+            self.projection = solution.transpose().to_owned();
+            self.cross = product(self.scatter.square.as_ref(), self.projection.as_ref());
+            self.inner = product(self.projection.transpose(), self.cross.as_ref());
+        }
+        (self.scatter.total - inner_product(&self.cross, &self.components)).max(0.0)
     }
-    let fitted: f64 = (0..factors.count())
-        .map(|k| column(&cross, k).iter().zip(column(&factors.weights, k)).map(|(a, b)| a * b).sum::<f64>())
-        .sum();
-    (total - fitted).max(0.0)
 }
 
-/// `gram^-1 right` with a trace of damping, so that two components that have become alike do not grow against each other.
+fn inner_product(a: &Mat<f64>, b: &Mat<f64>) -> f64 {
+    (0..a.ncols()).map(|k| super::small::dot(column(a, k), column(b, k))).sum()
+}
+
+/// `gram^-1 right` with a trace of damping.
 pub(super) fn solve(mut gram: Mat<f64>, right: &Mat<f64>) -> Option<Mat<f64>> {
     let size = gram.nrows();
     let trace: f64 = (0..size).map(|k| gram[(k, k)]).sum();
-    (0..size).for_each(|k| gram[(k, k)] += 1e-5 * trace / size.max(1) as f64 + 1e-300);
+    (0..size).for_each(|k| gram[(k, k)] += DAMPING * trace / size.max(1) as f64 + f64::MIN_POSITIVE);
     (size > 0).then_some(())?;
     gram.llt(Side::Lower).ok().map(|cholesky| cholesky.solve(right))
 }

@@ -4,8 +4,8 @@ use faer::MatRef;
 
 use super::factor::{Descent, Factors, descend};
 use super::gather::gather;
-use super::prune::{exchange, prune};
-use super::refit::refit;
+use super::prune::{exchange, thin};
+use super::refit::{Fit, ROUNDS, Scatter};
 
 /// How sparse, and how much work.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,13 +39,18 @@ pub struct Sparse {
 ///
 /// 1. [`gather`]: every joint's directions, joined where they move together;
 /// 2. [`descend`]: the penalised objective by exact block updates;
-/// 3. [`prune`] and [`exchange`] to the wanted density;
-/// 4. [`refit`]: least squares on what is left, so that the penalty does not shrink the motion.
+/// 3. least squares on what is left, so that the penalty does not shrink the motion;
+/// 4. [`prune`](super::prune()) and exchange of joint groups at the wanted density, and least squares again.
 pub fn sparse(motion: MatRef<'_, f64>, count: usize, sparsity: &Sparsity) -> Sparse {
-    let (mut factors, history) = descend(motion, gather(motion, count), sparsity.penalty, &sparsity.descent);
+    let (factors, history) = descend(motion, gather(motion, count), sparsity.penalty, &sparsity.descent);
+    let scatter = Scatter::new(motion);
+    let mut fit = Fit::new(&scatter, &factors.components);
+    fit.rounds(ROUNDS);
     if let Some(density) = sparsity.density {
-        factors = prune(motion, &refit(motion, &factors), density);
-        factors = exchange(motion, &factors, sparsity.exchanges);
+        let groups = factors.count() * motion.ncols() / 3;
+        thin(&mut fit, (density * groups as f64).round() as usize);
+        exchange(&mut fit, sparsity.exchanges);
+        fit.rounds(ROUNDS);
     }
-    Sparse { factors: refit(motion, &factors), history }
+    Sparse { factors: fit.factors(), history }
 }
