@@ -196,9 +196,9 @@ fn penalty() -> Fallible<()> {
 
 fn explained() -> Fallible<()> {
     const USED: [usize; 8] = [1, 2, 3, 5, 8, 12, 20, 30];
-    println!("share of the content's variance explained by the strongest components, K = 30");
-    println!("clip                                sparse: {USED:?}      PCA: the same");
+    println!("| clip | {} |\n|---|---|---|---|---|---|---|---|---|", USED.map(|used| used.to_string()).join(" | "));
     let mut sums = [[0.0; USED.len()]; 2];
+    let row = |shares: &[f64]| shares.iter().map(|s| format!(" {s:.3} |")).collect::<String>();
     for name in CLIPS {
         let (_, motion) = own(name)?;
         let m = motion.values.as_ref();
@@ -212,64 +212,80 @@ fn explained() -> Fallible<()> {
             })
         };
         let shares = [share(&sparse(m, 30, &Sparsity::default()).factors), share(&pca(m, 30))];
-        let row = |shares: &[f64]| shares.iter().map(|s| format!("{s:6.3}")).collect::<String>();
-        println!("{name:<32} {}   {}", row(&shares[0]), row(&shares[1]));
+        println!("| {name} |{}", row(&shares[0]));
         sums.iter_mut()
             .zip(&shares)
             .for_each(|(s, x)| s.iter_mut().zip(x).for_each(|(s, x)| *s += x / CLIPS.len() as f64));
     }
-    let row = |shares: &[f64]| shares.iter().map(|s| format!("{s:6.3}")).collect::<String>();
-    println!("{:<32} {}   {}", "mean", row(&sums[0]), row(&sums[1]));
+    println!("| mean |{}", row(&sums[0]));
+    println!("| mean, principal components |{}", row(&sums[1]));
     Ok(())
 }
 
+/// Means over the pairs, but the largest bone error of all.
 fn transfer() -> Fallible<()> {
     println!(
-        "pair                          K basis  bones smooth | style  content  bones mean / max %  jerk / content / style  steps seconds"
+        "| K, basis, bone weight, smooth weight | style distance | content distance | mean bone error, % | largest, % | jerk / content's | jerk / style's | steps | seconds |"
     );
-    for names in PAIRS {
-        let (rig, content, style) = pair(names)?;
-        let bones = bones(&rig);
-        let m = content.values.as_ref();
-        for count in COUNTS {
-            let all = Sparsity::default();
-            let bases = [
-                ("sparse", sparse(m, count, &all).factors, sparse(style.values.as_ref(), count, &all).factors),
-                ("PCA", pca(m, count), pca(style.values.as_ref(), count)),
-            ];
-            for (basis, own, wanted) in bases {
-                for (bone, smooth) in [(0.0, 0.0), (10.0, 0.0), (10.0, 1.0)] {
-                    let weights = Weights { bones: bone, smooth, ..Weights::default() };
-                    let objective = Objective::new(&own, &wanted, &bones, &content.mean, content.scale, weights);
-                    let start = Instant::now();
-                    let learned = learn(&objective, noise(content.channels(), count, 1), &Optimiser::default());
-                    let seconds = start.elapsed().as_secs_f64();
-                    let result = Factors { weights: own.weights.clone(), components: learned.components.clone() };
-                    let positions = rows(&result.product(), &content.mean, content.scale);
-                    let error = bone_error(&positions, content.channels(), &bones);
-                    let jerks = [
-                        positions,
-                        rows(&content.values, &content.mean, content.scale),
-                        rows(&style.values, &style.mean, content.scale),
-                    ]
-                    .map(|p| jerk(&p, content.channels(), FRAME_RATE));
-                    println!(
-                        "{:<28} {count:2} {basis:<6} {bone:5} {smooth:5}  | {:6.3} {:7.3}  {:8.3} / {:7.2}   {:8.1} / {:6.1} / {:6.1}  {:5} {seconds:6.3}",
-                        names[1].trim_end_matches(".bvh"),
-                        style_distance(&wanted.components, &learned.components),
-                        content_distance(&own.components, &learned.components),
-                        error.mean_percent,
-                        error.max_percent,
-                        jerks[0],
-                        jerks[1],
-                        jerks[2],
-                        learned.history.len() - 1,
-                    );
+    println!("|---|---|---|---|---|---|---|---|---|");
+    let pairs = PAIRS.into_iter().map(pair).collect::<Fallible<Vec<_>>>()?;
+    for count in COUNTS {
+        for basis in ["PCA", "sparse"] {
+            let factorise = |motion: &Motion| match basis {
+                "PCA" => pca(motion.values.as_ref(), count),
+                _ => sparse(motion.values.as_ref(), count, &Sparsity::default()).factors,
+            };
+            for (bone, smooth) in [(0.0, 0.0), (10.0, 0.0), (10.0, 1.0)] {
+                let weights = Weights { bones: bone, smooth, ..Weights::default() };
+                let mut mean = [0.0f64; 8];
+                for (rig, content, style) in &pairs {
+                    let row = transferred(rig, content, style, [factorise(content), factorise(style)], weights)?;
+                    for (index, (mean, value)) in mean.iter_mut().zip(row).enumerate() {
+                        *mean = if index == 3 { mean.max(value) } else { *mean + value / pairs.len() as f64 };
+                    }
                 }
+                let [style, content, bones, largest, own, other, steps, seconds] = mean;
+                println!(
+                    "| {count} {basis} {bone} {smooth} | {style:.3} | {content:.3} | {bones:.2} | {largest:.1} | {own:.2} | {other:.2} | {steps:.0} | {seconds:.2} |"
+                );
             }
         }
     }
     Ok(())
+}
+
+/// The columns of `transfer` for one pair.
+fn transferred(
+    rig: &Rig,
+    content: &Motion,
+    style: &Motion,
+    [own, wanted]: [Factors; 2],
+    weights: Weights,
+) -> Fallible<[f64; 8]> {
+    let bones = bones(rig);
+    let objective = Objective::new(&own, &wanted, &bones, &content.mean, content.scale, weights);
+    let start = Instant::now();
+    let learned = learn(&objective, noise(content.channels(), own.count(), 1), &Optimiser::default());
+    let seconds = start.elapsed().as_secs_f64();
+    let result = Factors { weights: own.weights.clone(), components: learned.components.clone() };
+    let positions = rows(&result.product(), &content.mean, content.scale);
+    let error = bone_error(&positions, content.channels(), &bones);
+    let [jerk, of_content, of_style] = [
+        positions,
+        rows(&content.values, &content.mean, content.scale),
+        rows(&style.values, &style.mean, content.scale),
+    ]
+    .map(|p| jerk(&p, content.channels(), FRAME_RATE));
+    Ok([
+        style_distance(&wanted.components, &learned.components),
+        content_distance(&own.components, &learned.components),
+        error.mean_percent,
+        error.max_percent,
+        jerk / of_content,
+        jerk / of_style,
+        (learned.history.len() - 1) as f64,
+        seconds,
+    ])
 }
 
 fn rows(values: &Mat<f64>, mean: &[f64], scale: f64) -> Vec<f64> {
@@ -305,9 +321,7 @@ fn held_out(motion: &Motion, count: usize) -> f64 {
 
 fn count() -> Fallible<()> {
     const TRIED: [usize; 11] = [5, 10, 15, 20, 25, 30, 35, 40, 45, 50, 55];
-    println!(
-        "held-out RMS joint error, cm, at K = {TRIED:?}; range: excess over the lowest within 10 % to 1 % of the range of the curve"
-    );
+    println!("| clip | K = 10 | 20 | 30 | 40 | range | chosen | in it |\n|---|---|---|---|---|---|---|---|");
     let mut inside = 0;
     for name in CLIPS {
         let (_, motion) = own(name)?;
@@ -321,15 +335,11 @@ fn count() -> Fallible<()> {
         let (low, high) = (first(0.1), first(0.01));
         let hit = (low..=high).contains(&choice.count);
         inside += usize::from(hit);
-        let curve: String = curve.iter().map(|e| format!("{e:6.2}")).collect();
-        println!(
-            "{name:<30} {curve}  range {low}..{high}, chosen {} {}: {}",
-            choice.count,
-            if hit { "in" } else { "OUT" },
-            choice.reason
-        );
+        let shown: String = [1, 3, 5, 7].iter().map(|index| format!(" {:.2} |", curve[*index])).collect();
+        println!("| {name} |{shown} {low} to {high} | {} | {} |", choice.count, if hit { "yes" } else { "no" });
+        eprintln!("{name}: {}", choice.reason);
     }
-    println!("{inside} of {}", CLIPS.len());
+    eprintln!("{inside} of {}", CLIPS.len());
     Ok(())
 }
 

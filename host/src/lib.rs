@@ -10,6 +10,7 @@ pub mod components;
 pub mod files;
 pub mod gait;
 pub mod mechanics;
+pub mod models;
 pub mod pack;
 pub mod prepare;
 pub mod quality;

@@ -4,9 +4,12 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use kinesic::{Pose, TranslatorState};
-use kinesic_host::clip::{Clip, JointMap};
+use kinesic_host::clip::{Canonical, Clip, JointMap};
 use kinesic_host::gait::{Manner, walk};
+use kinesic_host::mechanics::decouple;
+use kinesic_host::models;
 use kinesic_host::pack::{PackFile, Provenance};
+use kinesic_host::retarget::retarget;
 use kinesic_host::rig::{MAX_JOINTS, Rig};
 use kinesic_host::translate::{
     FormChoice, HostTranslator, NamedPair, TrainOptions, TrainPair, evaluate, plausible, train,
@@ -18,7 +21,8 @@ use super::output::{command_line, print_json, spinner, write_whole};
 
 /// Show the whole way: make two manners of walking, learn the difference, pack it, play an unseen walk frame by frame
 ///
-/// Writes the made walks, the pack and the translated walk to a folder.
+/// Then the pack of body mechanics that comes with the program takes the expression out of the weary walk. Writes the made
+/// walks, the pack and the results to a folder.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -57,6 +61,8 @@ struct Summary {
     multiply_adds_per_frame: usize,
     microseconds_per_frame: f64,
     frames: usize,
+    /// Mean angle of the neck to the vertical, degrees: of the plain walk, of the weary one, of the weary one's mechanics.
+    nod_deg: [f64; 3],
 }
 
 /// Runs the command.
@@ -122,6 +128,10 @@ pub fn run(args: &Args) -> miette::Result<()> {
         clip.write_bvh(path(name)).into_diagnostic()?;
     }
     rig.clip(&styled, 1.0 / FPS).write_bvh(path("unseen-weary.bvh")).into_diagnostic()?;
+    bar.set_message("taking the expression out of the weary walk");
+    let [plain_walk, weary_walk, without] = mechanics(&neutral, &weary, &map)?;
+    without.0.write_bvh(path("weary-plain.bvh")).into_diagnostic()?;
+    let nod_deg = [nod(&plain_walk)?, nod(&weary_walk)?, nod(&without)?];
     bar.finish_and_clear();
     let summary = Summary {
         folder: args.out.display().to_string(),
@@ -134,6 +144,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
         multiply_adds_per_frame: translator.multiply_adds(),
         microseconds_per_frame: microseconds,
         frames: source.len(),
+        nod_deg,
     };
     if args.json {
         print_json(&summary)
@@ -169,6 +180,36 @@ fn floor(rig: &Rig, a: &Clip, b: &Clip) -> miette::Result<f64> {
     Ok(100.0 * aligned_rms(series(&a.positions)?, series(&b.positions)?).into_diagnostic()?)
 }
 
+/// A clip with the map of its joints.
+type Mapped = (Clip, JointMap);
+
+/// Both walks on the skeleton of the pack of body mechanics, and the mechanics `B'` of the weary one.
+fn mechanics(neutral: &Clip, weary: &Clip, map: &JointMap) -> miette::Result<[Mapped; 3]> {
+    let file = models::mechanics();
+    let pack = file.pack().into_diagnostic()?;
+    let rig = Rig::from_pack(&pack).into_diagnostic()?;
+    let fps = f64::from(pack.metadata().frame_rate);
+    let on_rig = |clip: &Clip| retarget(&clip.resample(fps).into_diagnostic()?, map, &rig).into_diagnostic();
+    let (neutral, weary) = (on_rig(neutral)?, on_rig(weary)?);
+    let parts = decouple(&pack, &rig.poses(&weary)).into_diagnostic()?;
+    let poses: Vec<Pose<MAX_JOINTS>> = parts.iter().map(|parts| parts.mechanics).collect();
+    let without = rig.clip(&poses, 1.0 / fps);
+    Ok([neutral, weary, without].map(|clip| (clip, rig.map.clone())))
+}
+
+/// Mean angle between neck to head and the vertical, degrees.
+fn nod((clip, map): &Mapped) -> miette::Result<f64> {
+    let (Some(neck), Some(head)) = (map.joint(Canonical::Neck), map.joint(Canonical::Head)) else {
+        return Err(miette!("the skeleton of models/mechanics.kin has no neck or no head"));
+    };
+    let angle = |frame: usize| {
+        let positions = clip.positions(frame);
+        let bone = positions[head] - positions[neck];
+        bone.xz().norm().atan2(bone.y)
+    };
+    Ok((0..clip.frames()).map(angle).sum::<f64>().to_degrees() / clip.frames().max(1) as f64)
+}
+
 fn print(s: &Summary, folder: &Path) {
     println!("A walk that was not in the training, translated to a weary one.");
     println!("Aligned RMS joint distance to the weary walk that belongs to it, cm:");
@@ -184,12 +225,20 @@ fn print(s: &Summary, folder: &Path) {
         s.microseconds_per_frame, s.frames
     );
     println!();
+    println!("The weary walk without its expression (body mechanics trained on CMU clips):");
+    println!("Mean bend of the neck, degrees");
+    let [plain, weary, without] = s.nod_deg;
+    println!("  neutral walk             {plain:6.1}");
+    println!("  weary walk               {weary:6.1}");
+    println!("  weary, mechanics only    {without:6.1}");
+    println!();
     println!("Written to {}:", folder.display());
     println!("  neutral.bvh, weary.bvh   the training pair");
     println!("  weary.kin                the pack");
     println!("  unseen.bvh               a walk that was not in the training");
     println!("  unseen-weary.bvh         the same, translated");
     println!("  expected.bvh             the weary walk that belongs to it");
+    println!("  weary-plain.bvh          the weary walk without its expression");
     println!(
         "Next: kinesic inspect {0}/unseen-weary.bvh, or kinesic apply {0}/weary.kin YOUR.bvh --out out.bvh",
         folder.display()

@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# The tables of docs/components.md, and its contact sheet into docs/components. About a minute without the peers.
+# usage: docs/components.sh [penalty|explained|transfer|count|curve|sheet]...   (default: all)
+set -euo pipefail
+cd "$(dirname "$0")/.."
+data=$(realpath "${KINESIC_DATA:-../shared/data}")
+export KINESIC_DATA=$data
+cargo build --release --locked -q -p kinesic-host --bins --examples
+target=${CARGO_TARGET_DIR:-target}/release
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+for table in "${@:-penalty explained transfer count curve sheet}"; do
+    for table in $table; do
+        echo
+        case $table in
+        curve)
+            "$target/kinesic" train components --content "$data/xia/neutral_01_000.bvh" --style "$data/xia/proud_01_000.bvh" \
+                -k 30 --smooth 1 --posture 0 --curve --out "$work/proud.kin"
+            ;;
+        sheet)
+            mkdir -p docs/components
+            "$target/kinesic" train components --content "$data/cmu31/07_01.bvh" --style "$data/m21/style/OLD-1.bvh" \
+                -k 30 --smooth 1 --out "$work/old.kin"
+            "$target/kinesic" apply "$work/old.kin" --stored --out "$work/old.bvh"
+            "$target/examples/contact_sheet" docs/components/old.png 10 \
+                "$data/cmu31/07_01.bvh" "$data/m21/style/OLD-1.bvh" "$work/old.bvh"
+            ;;
+        *) "$target/examples/components_bench" "$table" ;;
+        esac
+    done
+done
