@@ -14,6 +14,7 @@ pub mod models;
 pub mod pack;
 pub mod prepare;
 pub mod quality;
+pub mod report;
 pub mod retarget;
 pub mod rig;
 pub mod translate;

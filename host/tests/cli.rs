@@ -161,3 +161,38 @@ fn every_clip_of_the_manifest_is_inspected() {
         }
     });
 }
+
+#[test]
+fn every_training_writes_a_report_beside_its_pack() {
+    let folder = demo();
+    let at = folder.path();
+    let read = |name: &str| std::fs::read_to_string(at.join(name)).unwrap();
+    succeed(&["train", "translate", "--pair", "neutral.bvh", "weary.bvh", "--out", "a.kin"], at);
+    let page = read("a.report.html");
+    for part in ["doing nothing", "<svg", "polyline", "Translator::&lt;19", "neutral.bvh", "kinesic train translate"] {
+        assert!(page.contains(part), "no {part} in the report of translate");
+    }
+    succeed(
+        &["train", "components", "--content", "neutral.bvh", "--style", "weary.bvh", "-k", "8", "--out", "c.kin"],
+        at,
+    );
+    for part in ["largest bone error", "<svg", "polyline", "weary.bvh"] {
+        assert!(read("c.report.html").contains(part), "no {part} in the report of components");
+    }
+    let clips = ["neutral.bvh", "unseen.bvh", "expected.bvh"];
+    let train =
+        ["train", "mechanics", "--hidden", "8", "--epochs", "2", "--out", "m.kin", "--report", "page.html", "--clips"];
+    succeed(&[&train[..], &clips].concat(), at);
+    for part in ["linear regression", "fine-tuning", "<svg", "polyline"] {
+        assert!(read("page.html").contains(part), "no {part} in the report of mechanics");
+    }
+    // Pictures and styles are in the file: it opens from disk without a network.
+    assert!(!page.contains("src=") && !page.contains("href="));
+    succeed(&["train", "translate", "--pair", "neutral.bvh", "weary.bvh", "--no-report", "--out", "b.kin"], at);
+    assert!(!at.join("b.report.html").exists());
+    let refused = kinesic(
+        &["train", "translate", "--pair", "neutral.bvh", "weary.bvh", "--report", "no/r.html", "--out", "b.kin"],
+        at,
+    );
+    assert!(!refused.status.success() && String::from_utf8_lossy(&refused.stderr).contains("does not exist"));
+}

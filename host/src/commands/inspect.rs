@@ -116,10 +116,12 @@ struct PackReport {
 
 /// A model, checked by loading it as the device would, and its figures by name.
 #[derive(Serialize)]
-struct ModelReport {
-    engine: &'static str,
+pub struct ModelReport {
+    /// Name of the engine.
+    pub engine: &'static str,
+    /// Shape, capacity, cost.
     #[serde(flatten)]
-    figures: serde_json::Map<String, serde_json::Value>,
+    pub figures: serde_json::Map<String, serde_json::Value>,
 }
 
 fn model(pack: &Pack, meta: &ModelMeta, joints: usize) -> miette::Result<ModelReport> {
@@ -144,8 +146,8 @@ fn model(pack: &Pack, meta: &ModelMeta, joints: usize) -> miette::Result<ModelRe
             let figures = json!({
                 "hidden": meta.hidden,
                 "code": meta.code,
-                "body_height_m": meta.body_height,
-                "hip_height_m": meta.hip_height,
+                "body_height_m": centimetres(meta.body_height),
+                "hip_height_m": centimetres(meta.hip_height),
                 "multiply_adds_per_frame_before_kinematics": mechanics.multiply_adds(),
             });
             ("mechanics", figures)
@@ -166,13 +168,18 @@ fn model(pack: &Pack, meta: &ModelMeta, joints: usize) -> miette::Result<ModelRe
     Ok(ModelReport { engine, figures })
 }
 
+/// What every model in a pack needs and does, by name.
+pub fn models(pack: &Pack) -> miette::Result<Vec<ModelReport>> {
+    let metadata = pack.metadata();
+    metadata.models.iter().map(|meta| model(pack, &meta, metadata.joints.len())).collect()
+}
+
 fn pack(path: &Path, json: bool) -> miette::Result<()> {
     let file = PackFile::read(path).into_diagnostic()?;
     let pack = file.pack().into_diagnostic()?;
     let metadata = pack.metadata();
     Rig::from_pack(&pack).into_diagnostic()?;
     let joints: Vec<JointMeta> = metadata.joints.iter().collect();
-    let models = metadata.models.iter().map(|meta| model(&pack, &meta, joints.len())).collect::<Result<_, _>>()?;
     let report = PackReport {
         file: path.display().to_string(),
         kind: format!("{:?}", pack.kind()),
@@ -181,7 +188,7 @@ fn pack(path: &Path, json: bool) -> miette::Result<()> {
         bytes: file.bytes().len(),
         tensor_bytes: pack.payload_len(),
         joints: joints.iter().map(|joint| joint.name.to_owned()).collect(),
-        models,
+        models: models(&pack)?,
         tensors: metadata.tensors.iter().map(|t| (t.name.to_owned(), format!("{:?}", t.kind), t.shape)).collect(),
         provenance: file.provenance(),
     };
@@ -219,6 +226,11 @@ fn pack(path: &Path, json: bool) -> miette::Result<()> {
         }
     }
     Ok(())
+}
+
+/// A length in m to the centimetre, as a double that prints so.
+fn centimetres(length: f32) -> f64 {
+    (100.0 * f64::from(length)).round() / 100.0
 }
 
 /// `size_of::<TranslatorState<JOINTS, STATES>>()`, whose parameters are known only now.

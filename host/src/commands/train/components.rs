@@ -11,6 +11,7 @@ use kinesic_host::prepare::{Source, fingerprint};
 use miette::{IntoDiagnostic, WrapErr};
 use serde::Serialize;
 
+use super::report::{ReportArgs, components::page};
 use crate::commands::clips::Reading;
 use crate::commands::output::{check_output, command_line, print_json, spinner, write_whole};
 
@@ -75,6 +76,8 @@ pub struct Args {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
+    report: ReportArgs,
+    #[command(flatten)]
     reading: Reading,
 }
 
@@ -96,6 +99,7 @@ fn count(text: &str) -> Result<Count, String> {
 /// Runs the command.
 pub fn run(args: &Args) -> miette::Result<()> {
     check_output(&args.out, "kin")?;
+    args.report.check(&args.out)?;
     let reading = args.reading.options()?;
     let bar = spinner();
     bar.set_message("reading the clips");
@@ -127,6 +131,8 @@ pub fn run(args: &Args) -> miette::Result<()> {
     provenance.metrics.extend(measured(&report));
     let bytes = trained.model.pack(&rig, &provenance);
     write_whole(&args.out, &bytes)?;
+    let file = PackFile::from_bytes(&bytes);
+    args.report.write(&args.out, &file, page(&trained, &report, &curve, [&content, &style], &rig, &file)?)?;
     bar.finish_and_clear();
     let summary = Summary {
         pack: args.out.display().to_string(),

@@ -1,15 +1,17 @@
 //! `kinesic train mechanics`.
 
+use std::cell::RefCell;
 use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::ValueEnum;
 use kinesic_host::mechanics::{Figures, NamedClip, Split, TrainOptions, Trained, propose, train};
-use kinesic_host::pack::{Baselines, Metric, Provenance};
+use kinesic_host::pack::{Baselines, Metric, PackFile, Provenance};
 use kinesic_host::prepare::{Source, common_rate, fingerprint};
 use miette::{IntoDiagnostic, WrapErr, miette};
 use serde::Serialize;
 
+use super::report::{ReportArgs, mechanics::page};
 use crate::commands::clips::{Reading, clip_paths};
 use crate::commands::output::{check_output, command_line, print_json, spinner, write_whole};
 
@@ -66,6 +68,8 @@ pub struct Args {
     json: bool,
     #[command(flatten)]
     reading: Reading,
+    #[command(flatten)]
+    report: ReportArgs,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -81,6 +85,7 @@ enum SplitBy {
 /// Runs the command.
 pub fn run(args: &Args) -> miette::Result<()> {
     check_output(&args.out, "kin")?;
+    args.report.check(&args.out)?;
     if !(0.0..=0.9).contains(&args.hold_out) {
         return Err(miette!("--hold-out {}: expected a part from 0 to 0.9", args.hold_out));
     }
@@ -120,7 +125,9 @@ pub fn run(args: &Args) -> miette::Result<()> {
         seed: args.seed,
     };
     let name = args.out.file_stem().map_or_else(|| "mechanics".to_owned(), |stem| stem.to_string_lossy().into_owned());
+    let history = RefCell::new(Vec::new());
     let progress = |stage: &'static str, epoch: usize, epochs: usize, error: f64| {
+        history.borrow_mut().push((stage, error));
         bar.set_message(format!("{stage}: {epoch} of {epochs}, error {error:.4}"));
         if bar.is_hidden() && (epoch == epochs || epoch.is_multiple_of(10)) {
             eprintln!("{stage}: epoch {epoch} of {epochs}, error {error:.5}");
@@ -144,6 +151,10 @@ pub fn run(args: &Args) -> miette::Result<()> {
     };
     let bytes = trained.model.pack(&rig, &provenance);
     write_whole(&args.out, &bytes)?;
+    let file = PackFile::from_bytes(&bytes);
+    // A plain clip that was not trained on shows more than one that was.
+    let shown = (0..clips.len()).filter(|i| clips[*i].mechanics).min_by_key(|i| trained.trained_on[*i]).unwrap_or(0);
+    args.report.write(&args.out, &file, page(&trained, &history.take(), &clips[shown], &rig, &file)?)?;
     bar.finish_and_clear();
     let summary = Summary {
         pack: args.out.display().to_string(),

@@ -2,6 +2,7 @@
 
 mod components;
 mod mechanics;
+mod report;
 mod translate;
 
 use clap::Subcommand;

@@ -13,6 +13,7 @@ use kinesic_host::translate::{
 use miette::{IntoDiagnostic, WrapErr};
 use serde::Serialize;
 
+use super::report::{ReportArgs, translate::page};
 use crate::commands::clips::{Pairs, Reading};
 use crate::commands::output::{check_output, command_line, print_json, spinner, write_whole};
 
@@ -58,6 +59,8 @@ pub struct Args {
     json: bool,
     #[command(flatten)]
     reading: Reading,
+    #[command(flatten)]
+    report: ReportArgs,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -97,6 +100,7 @@ enum Mirror {
 /// Runs the command.
 pub fn run(args: &Args) -> miette::Result<()> {
     check_output(&args.out, "kin")?;
+    args.report.check(&args.out)?;
     let paths = args.pairs.paths()?;
     let options = args.reading.options()?;
     let bar = spinner();
@@ -160,6 +164,8 @@ pub fn run(args: &Args) -> miette::Result<()> {
     provenance.metrics = metrics(&trained, &report);
     let bytes = trained.model.pack(&rig, &provenance);
     write_whole(&args.out, &bytes)?;
+    let file = PackFile::from_bytes(&bytes);
+    args.report.write(&args.out, &file, page(&trained, &report, &named[0], &rig, &file)?)?;
     bar.finish_and_clear();
     if args.json {
         print_json(&Summary::new(args, &trained, &report, bytes.len(), fps))
@@ -198,7 +204,8 @@ fn file_stem(path: &std::path::Path) -> String {
     path.file_stem().map_or_else(|| "style".to_owned(), |stem| stem.to_string_lossy().into_owned())
 }
 
-fn alignment_name(alignment: Alignment) -> &'static str {
+/// As on the command line.
+pub(super) fn alignment_name(alignment: Alignment) -> &'static str {
     match alignment {
         Alignment::Warp => "warp",
         Alignment::Uniform => "uniform",
@@ -207,7 +214,8 @@ fn alignment_name(alignment: Alignment) -> &'static str {
     }
 }
 
-fn describe(candidate: &Candidate) -> String {
+/// A candidate in words.
+pub(super) fn describe(candidate: &Candidate) -> String {
     if *candidate == AFFINE {
         return "per joint, static affine map".to_owned();
     }

@@ -1,0 +1,73 @@
+//! The report of `kinesic train components`.
+
+use kinesic_host::clip::Clip;
+use kinesic_host::components::{FRAME_RATE, Report, Settings, TradeOff, Trained, play_stored};
+use kinesic_host::pack::PackFile;
+use kinesic_host::report::{Chart, Line, Report as Page, Table, figures};
+use kinesic_host::rig::Rig;
+use miette::IntoDiagnostic;
+
+/// The page about a training.
+pub fn page(
+    trained: &Trained,
+    measured: &Report,
+    curve: &[TradeOff],
+    [content, style]: [&Clip; 2],
+    rig: &Rig,
+    file: &PackFile,
+) -> miette::Result<Page> {
+    let mut page = Page::new(
+        &format!("Style components: {}", trained.model.style),
+        "Two clips became sparse basic motions; new ones were learned that stay near the content's and share the style's \
+         Gram matrix (Phong, Thanh, Yu 2018).",
+    );
+    let result = play_stored(&file.pack().into_diagnostic()?, &Settings::default()).into_diagnostic()?;
+    let result = rig.clip(&result, 1.0 / FRAME_RATE);
+    page.heading("What it does");
+    page.figure(
+        &figures(&[("content", content), ("style", style), ("result", &result)]),
+        "Eight moments from the first to the last frame of each clip; left limbs blue, right ones orange.",
+    );
+    page.text(&format!("{}.", trained.choice.reason));
+    let row = |name: &str, value: String| vec![name.to_owned(), value];
+    page.table(&Table {
+        caption: "Distances are relative: 0 is equal, 1 is as far as the thing itself is from nothing".into(),
+        head: vec!["figure".into(), "value".into()],
+        rows: vec![
+            row("components", trained.choice.count.to_string()),
+            row("reconstruction error of the content", format!("{:.4}", measured.reconstruction_error)),
+            row("share of joint groups that move", format!("{:.2}", measured.density)),
+            row("distance to the style's Gram matrix", format!("{:.3}", measured.style_distance)),
+            row("distance to the content's components", format!("{:.3}", measured.content_distance)),
+            row("largest bone error as composed, %", format!("{:.2}", measured.composed_bone_error_max_percent)),
+            row("largest bone error on the device, %", format!("{:.4}", measured.bone_error_max_percent)),
+            row("jerk against the content's", format!("{:.2}", measured.jerk_ratio)),
+        ],
+    });
+    page.heading("How the learning went").chart(&Chart {
+        caption: "Objective of style learning (content + style + bones + smoothness, in squared deviations) over the steps of \
+                  Adam from noise."
+            .into(),
+        x: "step",
+        y: "objective",
+        lines: vec![Line::of("objective", &trained.learned.history)],
+    });
+    page.chart(&Chart {
+        caption: "Objective of the sparse factorisation over its sweeps: it never rises.".into(),
+        x: "sweep",
+        y: "objective",
+        lines: vec![Line::of("content", &trained.content.history), Line::of("style", &trained.style.history)],
+    });
+    if !curve.is_empty() {
+        let row = |point: &TradeOff| {
+            let distances = [point.style_distance, point.content_distance, point.bone_error_mean_percent];
+            std::iter::once(point.style_weight.to_string()).chain(distances.map(|x| format!("{x:.3}"))).collect()
+        };
+        page.table(&Table {
+            caption: "What other style weights would lead to".into(),
+            head: ["style weight", "style distance", "content distance", "mean bone error, %"].map(Into::into).to_vec(),
+            rows: curve.iter().map(row).collect(),
+        });
+    }
+    Ok(page)
+}
