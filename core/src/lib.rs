@@ -55,3 +55,6 @@ pub use mechanics::{BodyMechanics, MechanicsState};
 pub use model::{LoadError, Pack};
 pub use pose::{Pose, Skeleton};
 pub use translate::{Translator, TranslatorState};
+
+/// The vectors and quaternions of poses.
+pub use nalgebra;

@@ -111,25 +111,52 @@ pub fn images(
     if !target.features.is_empty() {
         flags.push(format!("-Ctarget-feature={}", target.features));
     }
-    let mut cargo = Command::new(&toolchain.cargo);
-    cargo
-        .current_dir(home().join("image"))
-        .args(["build", "--release", "--locked", "--quiet", "--target", &target.triple, "--target-dir"])
-        .arg(&folder)
-        .args(binaries.iter().flat_map(|binary| ["--bin", binary]))
-        .args(toolchain.builds_core.then_some("-Zbuild-std=core"));
-    let mut settings: Vec<(&str, OsString)> = vec![
-        ("RUSTC", toolchain.rustc.clone().into()),
-        ("CARGO_ENCODED_RUSTFLAGS", flags.join("\x1f").into()),
-        ("KINESIC_LAYOUT", folder.join("layout").into()),
-        ("KINESIC_PACKS", folders.packs().into()),
-    ];
-    if toolchain.builds_core {
-        // Building the library from source is unstable for cargo's interface, not for the result: the compiler is a release.
-        settings.push(("RUSTC_BOOTSTRAP", "1".into()));
+    let settings = vec![("KINESIC_LAYOUT", folder.join("layout").into()), ("KINESIC_PACKS", folders.packs().into())];
+    let what = format!("the images for {name}");
+    let project = home().join("image");
+    BareMetal { what, project, folder, triple: &target.triple, flags, binaries, settings }.build(toolchain)
+}
+
+/// Builds the project that users copy, `docs/board`, and returns the image. Its own files say where memory is.
+pub fn board(folders: &Folders, name: &str, target: &Target, toolchain: &Toolchain) -> Result<PathBuf, BuildError> {
+    let flags = vec![format!("-Clinker={}", toolchain.linker.display()), "-Clinker-flavor=ld.lld".to_owned()];
+    let (what, project) = (format!("docs/board for {name}"), home().join("../docs/board"));
+    let (folder, binaries) = (folders.target(name).join("board"), &["kinesic-board"][..]);
+    let built = BareMetal { what, project, folder, triple: &target.triple, flags, binaries, settings: Vec::new() }
+        .build(toolchain)?;
+    Ok(built.join(binaries[0]))
+}
+
+/// Binaries of a crate without an operating system.
+struct BareMetal<'a> {
+    what: String,
+    project: PathBuf,
+    folder: PathBuf,
+    triple: &'a str,
+    flags: Vec<String>,
+    binaries: &'a [&'a str],
+    settings: Vec<(&'static str, OsString)>,
+}
+
+impl BareMetal<'_> {
+    /// Builds them and returns their folder.
+    fn build(mut self, toolchain: &Toolchain) -> Result<PathBuf, BuildError> {
+        let mut cargo = Command::new(&toolchain.cargo);
+        cargo
+            .current_dir(&self.project)
+            .args(["build", "--release", "--locked", "--quiet", "--target", self.triple, "--target-dir"])
+            .arg(&self.folder)
+            .args(self.binaries.iter().flat_map(|binary| ["--bin", binary]))
+            .args(toolchain.builds_core.then_some("-Zbuild-std=core"));
+        self.settings.push(("RUSTC", toolchain.rustc.clone().into()));
+        self.settings.push(("CARGO_ENCODED_RUSTFLAGS", self.flags.join("\x1f").into()));
+        if toolchain.builds_core {
+            // Building the library from source is unstable for cargo's interface, not for the result: the compiler is a release.
+            self.settings.push(("RUSTC_BOOTSTRAP", "1".into()));
+        }
+        run(cargo, self.settings, &self.what)?;
+        Ok(self.folder.join(self.triple).join("release"))
     }
-    run(cargo, settings, &format!("the images for {name}"))?;
-    Ok(folder.join(&target.triple).join("release"))
 }
 
 /// Builds the plugin for the host and returns the library.
