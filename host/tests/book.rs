@@ -1,0 +1,168 @@
+//! The README and the book: every command line runs as written, and every error message on the page is a real one.
+//!
+//! - ```` ```sh ````: commands that must succeed, line by line in one shell
+//! - ```` ```console ```` with `$ ` lines: each command is run, and every line below it must be in what it prints (white space apart)
+//!
+//! Lines of `cargo`, `./ci.sh`, `alias` and the like are about a fresh clone; they are listed in [`ELSEWHERE`] with who runs them.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// Starts of command lines that are not run here.
+const ELSEWHERE: [&str; 5] = [
+    // .ci/run runs these in a fresh clone, and the demo's command in `cli.rs`.
+    "cargo run --release",
+    "./ci.sh test",
+    // The binary is on the path of the shell below.
+    "cargo build --release",
+    "alias kinesic=",
+    // A comment.
+    "#",
+];
+
+/// Clips of the reader's own, made of the demo's.
+const OWN: [(&str, &str); 8] = [
+    ("my-walk.bvh", "neutral.bvh"),
+    ("my-tired-walk.bvh", "weary.bvh"),
+    ("my-other-walk.bvh", "unseen.bvh"),
+    ("my-other-tired-walk.bvh", "expected.bvh"),
+    ("boxing.bvh", "unseen.bvh"),
+    ("walk.bvh", "neutral.bvh"),
+    ("signal.bvh", "unseen.bvh"),
+    ("old.bvh", "weary.bvh"),
+];
+
+struct Block {
+    kind: String,
+    line: usize,
+    lines: Vec<String>,
+}
+
+fn repository() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// The fenced blocks of a page.
+fn blocks(page: &str) -> Vec<Block> {
+    let mut blocks = Vec::new();
+    let mut open: Option<Block> = None;
+    for (index, line) in page.lines().enumerate() {
+        match (line.strip_prefix("```"), open.as_mut()) {
+            (Some(kind), None) => open = Some(Block { kind: kind.to_owned(), line: index + 1, lines: Vec::new() }),
+            (Some(_), Some(_)) => blocks.extend(open.take()),
+            (None, Some(block)) => block.lines.push(line.to_owned()),
+            (None, None) => {}
+        }
+    }
+    blocks
+}
+
+/// A folder as a new user has it, with clips of their own.
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let made = shell(folder.path(), "kinesic demo --out made");
+    assert!(made.status.success(), "{}", text(&made));
+    for (own, made) in OWN {
+        std::fs::rename(folder.path().join("made").join(made), folder.path().join(own))
+            .or_else(|_| std::fs::copy(folder.path().join(twin(own)), folder.path().join(own)).map(drop))
+            .unwrap();
+    }
+    std::fs::remove_dir_all(folder.path().join("made")).unwrap();
+    std::os::unix::fs::symlink(repository().join("models").canonicalize().unwrap(), folder.path().join("models"))
+        .unwrap();
+    folder
+}
+
+/// The first name under which a clip of the demo was kept.
+fn twin(own: &str) -> &'static str {
+    let made = OWN.iter().find(|(name, _)| *name == own).map(|(_, made)| *made);
+    OWN.iter().find(|(_, other)| Some(*other) == made).map_or("", |(name, _)| name)
+}
+
+fn shell(folder: &Path, script: &str) -> Output {
+    let binary = Path::new(env!("CARGO_BIN_EXE_kinesic")).parent().unwrap();
+    let path = format!("{}:{}", binary.display(), std::env::var("PATH").unwrap_or_default());
+    Command::new("sh").arg("-c").arg(script).current_dir(folder).env("PATH", path).output().unwrap()
+}
+
+fn text(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
+}
+
+/// Reports wrap lines and draw bars: compare without them.
+fn squeezed(text: &str) -> String {
+    text.chars().filter(|c| !c.is_whitespace() && *c != '│').collect()
+}
+
+/// Runs a page; returns how many commands ran, and how many messages were compared.
+fn run(page: &str) -> [usize; 2] {
+    let source = std::fs::read_to_string(repository().join(page)).unwrap();
+    let folder = folder();
+    let (mut at, mut ran, mut compared) = (folder.path().to_owned(), 0, 0);
+    for block in blocks(&source) {
+        let place = format!("{page}, line {}", block.line);
+        if block.kind == "sh" {
+            let commands: Vec<&str> = block
+                .lines
+                .iter()
+                .map(String::as_str)
+                .filter(|line| !line.trim().is_empty() && !ELSEWHERE.iter().any(|start| line.trim().starts_with(start)))
+                .collect();
+            if commands.is_empty() {
+                continue;
+            }
+            // One shell for the block, so that `cd` and here-documents work; it tells where it ends up.
+            let output = shell(&at, &format!("set -e\n{}\npwd > {}/pwd", commands.join("\n"), folder.path().display()));
+            assert!(output.status.success(), "{place}: {}", text(&output));
+            at = PathBuf::from(std::fs::read_to_string(folder.path().join("pwd")).unwrap().trim());
+            ran += commands.iter().filter(|command| command.starts_with("kinesic ")).count();
+        }
+        if block.kind == "console" && block.lines.iter().any(|line| line.starts_with("$ ")) {
+            let mut printed = String::new();
+            for line in &block.lines {
+                if let Some(command) = line.strip_prefix("$ ") {
+                    let output = shell(&at, command);
+                    assert_ne!(output.status.code(), Some(101), "{place}: {command} panicked");
+                    printed = squeezed(&text(&output));
+                    ran += 1;
+                } else {
+                    assert!(printed.contains(&squeezed(line)), "{place}: no '{line}' in: {printed}");
+                    compared += 1;
+                }
+            }
+        }
+    }
+    [ran, compared]
+}
+
+#[test]
+fn the_readme_runs_as_written() {
+    let [ran, _] = run("README.md");
+    assert!(ran >= 10, "{ran} commands");
+}
+
+#[test]
+fn the_book_runs_as_written() {
+    let pages = ["tour", "your-clips", "your-skeleton", "model-size"];
+    for page in pages {
+        let [ran, _] = run(&format!("docs/{page}.md"));
+        assert!(ran >= 2, "{page}: {ran} commands");
+    }
+}
+
+#[test]
+fn every_message_of_the_troubleshooting_page_is_real() {
+    let [ran, compared] = run("docs/troubleshooting.md");
+    assert!(ran >= 20 && compared >= 20, "{ran} commands, {compared} messages");
+}
+
+#[test]
+fn the_book_has_every_page() {
+    let summary = std::fs::read_to_string(repository().join("docs/SUMMARY.md")).unwrap();
+    for entry in std::fs::read_dir(repository().join("docs")).unwrap() {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        if name.ends_with(".md") && name != "SUMMARY.md" {
+            assert!(summary.contains(&format!("({name})")), "docs/SUMMARY.md lacks {name}");
+        }
+    }
+}
