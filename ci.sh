@@ -11,6 +11,8 @@ usage: ./ci.sh [COMMAND]
   lint      formatting, clippy and documentation, without warnings
   unit      all tests of the workspace, on the real clips where they are (KINESIC_DATA, default ../shared/data)
   firmware  images for every target, run in the emulator, against the budgets
+
+  header    makes c/include/kinesic.h from c/src
 EOF
 }
 
@@ -22,6 +24,10 @@ need() {
 
 lint() {
     cargo fmt --all --check
+    # Crates for microcontrollers are workspaces of their own.
+    for crate in c docs/board firmware-sim/image firmware-sim/plugin tests/no-std-link; do
+        cargo fmt --manifest-path "$crate/Cargo.toml" --check
+    done
     cargo clippy --release --workspace --all-targets --locked -- -D warnings
     RUSTDOCFLAGS="-D warnings" cargo doc --release --workspace --no-deps --locked
 }
@@ -56,6 +62,10 @@ firmware() {
     rm -r "$folder"
 }
 
+header() {
+    KINESIC_HEADER=write cargo test --release --locked -p kinesic-firmware-sim --test c the_header_is_that_of_the_crate
+}
+
 need cargo "Install Rust: https://rustup.rs"
 need cc "Install a C linker: apt-get install gcc"
 case "${1:-test}" in
@@ -65,7 +75,7 @@ test)
     unit
     firmware
     ;;
-lint | unit | firmware) "$1" ;;
+lint | unit | firmware | header) "$1" ;;
 -h | --help) usage ;;
 *)
     usage >&2

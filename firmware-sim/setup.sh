@@ -1,11 +1,13 @@
 #!/usr/bin/env bash
-# Installs what `kinesic-firmware-sim check` needs and does not find: emulators, and a compiler for the targets where no
-# rustup target can be had. As root on Debian it installs the packages; otherwise it says what to install and fails.
+# Installs what `kinesic-firmware-sim check` and its tests need and do not find: emulators, a compiler for the targets where
+# no rustup target can be had, a C compiler. As root on Debian it installs the packages; otherwise it says what to install and fails.
 set -euo pipefail
 
 wanted=()
 command -v qemu-system-arm >/dev/null || wanted+=(qemu-system-arm)
 command -v qemu-system-riscv32 >/dev/null || wanted+=(qemu-system-misc)
+# For the example of the C interface.
+command -v arm-none-eabi-gcc >/dev/null || wanted+=(gcc-arm-none-eabi)
 
 # A compiler for the targets: all rustup targets, or any compiler with its library's sources.
 triples=(thumbv6m-none-eabi thumbv7em-none-eabihf thumbv8m.main-none-eabihf riscv32imc-unknown-none-elf)

@@ -127,7 +127,17 @@ pub fn board(folders: &Folders, name: &str, target: &Target, toolchain: &Toolcha
     Ok(built.join(binaries[0]))
 }
 
-/// Binaries of a crate without an operating system.
+/// Builds the static library for C (`c/`) for a target, and returns it.
+pub fn c_library(folders: &Folders, name: &str, target: &Target, toolchain: &Toolchain) -> Result<PathBuf, BuildError> {
+    let (what, project, folder) =
+        (format!("the C library for {name}"), home().join("../c"), folders.target(name).join("c"));
+    let flags = vec![format!("-Ctarget-cpu={}", target.cpu)];
+    let built = BareMetal { what, project, folder, triple: &target.triple, flags, binaries: &[], settings: Vec::new() }
+        .build(toolchain)?;
+    Ok(built.join("libkinesic_c.a"))
+}
+
+/// Binaries, or the library, of a crate without an operating system.
 struct BareMetal<'a> {
     what: String,
     project: PathBuf,

@@ -1,0 +1,36 @@
+//! C interface of kinesic. The header `include/kinesic.h` is made of this crate by `./ci.sh header`.
+//!
+//! Everything is the caller's: there is no heap and no hidden state. A model borrows the pack's bytes, which must stay where they
+//! are, aligned to 16. After a successful load nothing can fail. Functions take valid pointers or null; with a null pointer a load
+//! returns `KINESIC_STATUS_NULL`, and everything else does nothing.
+#![no_std]
+
+mod components;
+mod mechanics;
+mod pose;
+mod status;
+mod storage;
+mod translator;
+
+pub use components::*;
+pub use mechanics::*;
+pub use pose::*;
+pub use status::*;
+pub use translator::*;
+
+/// Joints that a pose holds; a pack with more is refused.
+pub const KINESIC_JOINTS: usize = 32;
+/// Filter states of a translator, and its principal coordinates.
+pub const KINESIC_STATES: usize = 1280;
+/// Style components.
+pub const KINESIC_COMPONENTS: usize = 64;
+/// Units of a layer of body mechanics.
+pub const KINESIC_UNITS: usize = 300;
+/// Frames of memory of body mechanics: a third of the frame rate.
+pub const KINESIC_WINDOW: usize = 20;
+
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
+    // Core has no road to here; `firmware-sim` proves it by the symbols of its images.
+    loop {}
+}
