@@ -18,3 +18,4 @@ pub mod report;
 pub mod retarget;
 pub mod rig;
 pub mod translate;
+mod vector;

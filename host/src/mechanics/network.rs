@@ -6,6 +6,8 @@ use rand::RngExt;
 use rand::rngs::ChaCha8Rng;
 use rayon::prelude::*;
 
+use crate::vector::vectorised;
+
 /// Samples that one thread takes at a time. A batch is always cut alike and summed in the same order, so that results do not
 /// depend on the number of threads.
 const PART: usize = 128;
@@ -37,16 +39,17 @@ impl Layer {
         Self { weights: vec![0.0; self.weights.len()], bias: vec![0.0; self.bias.len()], ..*self }
     }
 
-    fn forward(&self, x: &[f32], samples: usize) -> Vec<f32> {
-        let mut y = self.bias.repeat(samples);
+    /// `y` gets one row of outputs a sample.
+    fn forward(&self, x: &[f32], samples: usize, y: &mut Vec<f32>) {
+        y.clear();
+        (0..samples).for_each(|_| y.extend_from_slice(&self.bias));
         let weights = MatRef::from_row_major_slice(&self.weights, self.outputs, self.inputs);
-        let out = MatMut::from_row_major_slice_mut(&mut y, samples, self.outputs);
+        let out = MatMut::from_row_major_slice_mut(y, samples, self.outputs);
         let x = MatRef::from_row_major_slice(x, samples, self.inputs);
         matmul(out, Accum::Add, x, weights.transpose(), 1.0, Par::Seq);
         if self.tanh {
-            y.iter_mut().for_each(|y| *y = kinesic::kernel::tanh(*y));
+            vectorised(|| y.iter_mut().for_each(|y| *y = kinesic::kernel::tanh(*y)));
         }
-        y
     }
 }
 
@@ -80,80 +83,62 @@ impl Network {
     /// Outputs of all samples, row-major.
     pub fn apply(&self, input: &[f32]) -> Vec<f32> {
         let inputs = self.inputs().max(1);
-        input.par_chunks(1024 * inputs).map(|rows| self.values(rows).pop().unwrap_or_default()).flatten().collect()
+        let outputs = |rows: &[f32]| {
+            let mut values = Vec::new();
+            self.values(rows, &mut values);
+            values.pop().unwrap_or_default()
+        };
+        input.par_chunks(1024 * inputs).map(outputs).flatten().collect()
     }
 
     /// Outputs of every layer.
-    fn values(&self, input: &[f32]) -> Vec<Vec<f32>> {
+    fn values(&self, input: &[f32], values: &mut Vec<Vec<f32>>) {
         let samples = input.len() / self.inputs().max(1);
-        let mut values: Vec<Vec<f32>> = Vec::with_capacity(self.layers.len());
-        for layer in &self.layers {
-            let out = layer.forward(values.last().map_or(input, |v| v), samples);
-            values.push(out);
+        values.resize_with(self.layers.len(), Vec::new);
+        for (index, layer) in self.layers.iter().enumerate() {
+            let (before, own) = values.split_at_mut(index);
+            layer.forward(before.last().map_or(input, |v| v), samples, &mut own[0]);
         }
-        values
     }
 
     /// Sum of squared errors and its gradient by weights and biases.
     pub fn gradient(&self, batch: Batch) -> (f64, Network) {
-        let (inputs, outputs) = (self.inputs().max(1), self.outputs().max(1));
-        let parts: Vec<(f64, Network)> = batch
-            .input
-            .par_chunks(PART * inputs)
-            .zip(batch.target.par_chunks(PART * outputs))
-            .map(|(input, target)| self.part(input, target))
-            .collect();
-        let mut sum = (0.0, Network { layers: self.layers.iter().map(Layer::zeros).collect() });
-        for (loss, gradient) in parts {
-            sum.0 += loss;
-            for (to, from) in sum.1.parameters_mut().zip(gradient.parameters()) {
-                to.iter_mut().zip(from).for_each(|(to, from)| *to += from);
-            }
-        }
-        sum
+        let mut parts = Vec::new();
+        let samples = batch.input.len() / self.inputs().max(1);
+        let rows: Vec<usize> = (0..samples).collect();
+        self.fill(&mut parts, batch, &rows, &mut |_| ());
+        let loss = self.sum(&mut parts, samples);
+        (loss, parts.swap_remove(0).gradient)
     }
 
-    fn part(&self, input: &[f32], target: &[f32]) -> (f64, Network) {
-        let samples = input.len() / self.inputs().max(1);
-        let values = self.values(input);
-        let mut delta: Vec<f32> = values.last().map_or(input, |v| v).iter().zip(target).map(|(y, t)| y - t).collect();
-        let loss = delta.iter().map(|d| f64::from(*d).powi(2)).sum();
-        delta.iter_mut().for_each(|d| *d *= 2.0);
-        let mut gradient = Vec::with_capacity(self.layers.len());
-        for (index, layer) in self.layers.iter().enumerate().rev() {
-            if layer.tanh {
-                delta.iter_mut().zip(&values[index]).for_each(|(d, y)| *d *= 1.0 - y * y);
-            }
-            let x = if index == 0 { input } else { &values[index - 1] };
-            let mut to = layer.zeros();
-            let rows = MatRef::from_row_major_slice(&delta, samples, layer.outputs);
-            matmul(
-                MatMut::from_row_major_slice_mut(&mut to.weights, layer.outputs, layer.inputs),
-                Accum::Replace,
-                rows.transpose(),
-                MatRef::from_row_major_slice(x, samples, layer.inputs),
-                1.0,
-                Par::Seq,
-            );
-            for row in delta.chunks_exact(layer.outputs) {
-                to.bias.iter_mut().zip(row).for_each(|(b, d)| *b += d);
-            }
-            if index > 0 {
-                let mut before = vec![0.0; samples * layer.inputs];
-                matmul(
-                    MatMut::from_row_major_slice_mut(&mut before, samples, layer.inputs),
-                    Accum::Replace,
-                    rows,
-                    MatRef::from_row_major_slice(&layer.weights, layer.outputs, layer.inputs),
-                    1.0,
-                    Par::Seq,
-                );
-                delta = before;
-            }
-            gradient.push(to);
+    /// Puts the chosen rows of the data into as many parts as they need; `corrupt` may change the inputs.
+    fn fill(&self, parts: &mut Vec<Part>, data: Batch, rows: &[usize], corrupt: &mut dyn FnMut(&mut [f32])) {
+        let (inputs, outputs) = (self.inputs(), self.outputs());
+        let count = rows.len().div_ceil(PART).max(1);
+        while parts.len() < count {
+            parts.push(Part::new(self));
         }
-        gradient.reverse();
-        (loss, Network { layers: gradient })
+        parts.iter_mut().for_each(|part| part.clear());
+        for (part, rows) in parts.iter_mut().zip(rows.chunks(PART)) {
+            for row in rows {
+                part.input.extend_from_slice(&data.input[row * inputs..][..inputs]);
+                part.target.extend_from_slice(&data.target[row * outputs..][..outputs]);
+            }
+            corrupt(&mut part.input);
+        }
+    }
+
+    /// Sum of squared errors over the parts that hold `samples` rows; the first part's gradient becomes that of all.
+    fn sum(&self, parts: &mut [Part], samples: usize) -> f64 {
+        let count = samples.div_ceil(PART).max(1);
+        parts[..count].par_iter_mut().for_each(|part| part.run(self));
+        let (first, others) = parts[..count].split_at_mut(1);
+        for other in others.iter() {
+            for (to, from) in first[0].gradient.parameters_mut().zip(other.gradient.parameters()) {
+                vectorised(|| to.iter_mut().zip(from).for_each(|(to, from)| *to += from));
+            }
+        }
+        first[0].loss + others.iter().map(|other| other.loss).sum::<f64>()
     }
 
     /// Weights and bias of every layer in turn.
@@ -164,6 +149,77 @@ impl Network {
     /// Weights and bias of every layer in turn.
     pub fn parameters_mut(&mut self) -> impl Iterator<Item = &mut Vec<f32>> {
         self.layers.iter_mut().flat_map(|l| [&mut l.weights, &mut l.bias])
+    }
+}
+
+/// A part of a batch with all that its gradient needs, kept from batch to batch: memory that is asked for anew every time costs
+/// as much as the arithmetic.
+struct Part {
+    input: Vec<f32>,
+    target: Vec<f32>,
+    /// Outputs of every layer.
+    values: Vec<Vec<f32>>,
+    /// Slope of the loss by the outputs of a layer, and of the layer before.
+    delta: Vec<f32>,
+    before: Vec<f32>,
+    gradient: Network,
+    loss: f64,
+}
+
+impl Part {
+    fn new(network: &Network) -> Self {
+        let gradient = Network { layers: network.layers.iter().map(Layer::zeros).collect() };
+        let [input, target, delta, before] = [(); 4].map(|()| Vec::new());
+        Self { input, target, values: Vec::new(), delta, before, gradient, loss: 0.0 }
+    }
+
+    fn clear(&mut self) {
+        self.input.clear();
+        self.target.clear();
+    }
+
+    fn run(&mut self, network: &Network) {
+        let samples = self.input.len() / network.inputs().max(1);
+        network.values(&self.input, &mut self.values);
+        let Self { input, target, values, delta, before, gradient, loss } = self;
+        delta.clear();
+        delta.extend(values.last().map_or(&*input, |v| v).iter().zip(&*target).map(|(y, t)| y - t));
+        *loss = delta.iter().map(|d| f64::from(*d).powi(2)).sum();
+        vectorised(|| delta.iter_mut().for_each(|d| *d *= 2.0));
+        for (index, layer) in network.layers.iter().enumerate().rev() {
+            if layer.tanh {
+                vectorised(|| delta.iter_mut().zip(&values[index]).for_each(|(d, y)| *d *= 1.0 - y * y));
+            }
+            let x = if index == 0 { &*input } else { &values[index - 1] };
+            let to = &mut gradient.layers[index];
+            let rows = MatRef::from_row_major_slice(delta, samples, layer.outputs);
+            matmul(
+                MatMut::from_row_major_slice_mut(&mut to.weights, layer.outputs, layer.inputs),
+                Accum::Replace,
+                rows.transpose(),
+                MatRef::from_row_major_slice(x, samples, layer.inputs),
+                1.0,
+                Par::Seq,
+            );
+            to.bias.fill(0.0);
+            vectorised(|| {
+                for row in delta.chunks_exact(layer.outputs) {
+                    to.bias.iter_mut().zip(row).for_each(|(b, d)| *b += d);
+                }
+            });
+            if index > 0 {
+                before.resize(samples * layer.inputs, 0.0);
+                matmul(
+                    MatMut::from_row_major_slice_mut(before, samples, layer.inputs),
+                    Accum::Replace,
+                    rows,
+                    MatRef::from_row_major_slice(&layer.weights, layer.outputs, layer.inputs),
+                    1.0,
+                    Par::Seq,
+                );
+                std::mem::swap(delta, before);
+            }
+        }
     }
 }
 
@@ -194,9 +250,9 @@ pub fn fit(
     let (inputs, outputs) = (network.inputs().max(1), network.outputs().max(1));
     let samples = data.input.len() / inputs;
     let mut order: Vec<usize> = (0..samples).collect();
-    let mut first = Network { layers: network.layers.iter().map(Layer::zeros).collect() };
-    let mut second = first.clone();
-    let (mut step, mut error) = (0i32, f64::NAN);
+    let mut adam = Adam::new(network);
+    let mut parts = Vec::new();
+    let mut error = f64::NAN;
     let steps = (how.epochs * samples.div_ceil(how.batch.max(1))).max(1) as f32;
     let width = how.noise * 3f32.sqrt();
     for epoch in 0..how.epochs {
@@ -205,36 +261,53 @@ pub fn fit(
         }
         let mut sum = 0.0;
         for chosen in order.chunks(how.batch.max(1)) {
-            let mut x = Vec::with_capacity(chosen.len() * inputs);
-            let mut t = Vec::with_capacity(chosen.len() * outputs);
-            for sample in chosen {
-                x.extend_from_slice(&data.input[sample * inputs..][..inputs]);
-                t.extend_from_slice(&data.target[sample * outputs..][..outputs]);
-            }
-            if width > 0.0 {
-                x.iter_mut().for_each(|x| *x += random.random_range(-width..width));
-            }
-            let (loss, gradient) = network.gradient(Batch { input: &x, target: &t });
-            sum += loss;
-            let rate = how.rate * 0.5 * (1.0 + (std::f32::consts::PI * step as f32 / steps).cos());
-            step += 1;
-            let scale = 1.0 / (chosen.len() * outputs) as f32;
-            let (b1, b2) = (0.9f32, 0.999f32);
-            let (c1, c2) = (1.0 - b1.powi(step), 1.0 - b2.powi(step));
-            let moments = first.parameters_mut().zip(second.parameters_mut());
-            for ((w, g), (m, v)) in network.parameters_mut().zip(gradient.parameters()).zip(moments) {
-                for (((w, g), m), v) in w.iter_mut().zip(g).zip(m).zip(v) {
-                    let g = g * scale;
-                    *m = b1 * *m + (1.0 - b1) * g;
-                    *v = b2 * *v + (1.0 - b2) * g * g;
-                    *w -= rate * ((*m / c1) / ((*v / c2).sqrt() + 1e-8) + how.decay * *w);
+            network.fill(&mut parts, data, chosen, &mut |input| {
+                if width > 0.0 {
+                    input.iter_mut().for_each(|x| *x += random.random_range(-width..width));
                 }
-            }
+            });
+            sum += network.sum(&mut parts, chosen.len());
+            let rate = how.rate * 0.5 * (1.0 + (std::f32::consts::PI * adam.step as f32 / steps).cos());
+            let scale = 1.0 / (chosen.len() * outputs) as f32;
+            adam.descend(network, &parts[0].gradient, scale, rate, how.decay);
         }
         error = sum / (samples * outputs) as f64;
         progress(epoch + 1, error);
     }
     error
+}
+
+/// Adam (Kingma 2015) with decoupled weight decay.
+struct Adam {
+    first: Network,
+    second: Network,
+    step: i32,
+}
+
+impl Adam {
+    fn new(network: &Network) -> Self {
+        let first = Network { layers: network.layers.iter().map(Layer::zeros).collect() };
+        Self { second: first.clone(), first, step: 0 }
+    }
+
+    /// One step against `scale` times the gradient.
+    fn descend(&mut self, network: &mut Network, gradient: &Network, scale: f32, rate: f32, decay: f32) {
+        const FADE: [f32; 2] = [0.9, 0.999];
+        self.step += 1;
+        let [b1, b2] = FADE;
+        let (c1, c2) = (1.0 - b1.powi(self.step), 1.0 - b2.powi(self.step));
+        let moments = self.first.parameters_mut().zip(self.second.parameters_mut());
+        for ((w, g), (m, v)) in network.parameters_mut().zip(gradient.parameters()).zip(moments) {
+            vectorised(|| {
+                for (((w, g), m), v) in w.iter_mut().zip(g).zip(m).zip(v) {
+                    let g = g * scale;
+                    *m = b1 * *m + (1.0 - b1) * g;
+                    *v = b2 * *v + (1.0 - b2) * g * g;
+                    *w -= rate * ((*m / c1) / ((*v / c2).sqrt() + 1e-8) + decay * *w);
+                }
+            });
+        }
+    }
 }
 
 #[cfg(test)]
