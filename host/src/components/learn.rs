@@ -6,6 +6,7 @@ use rand::{RngExt, SeedableRng};
 
 use super::factor::{column, column_mut};
 use super::objective::{Objective, Terms};
+use crate::vector::vectorised;
 
 /// Steps over which progress is judged.
 const WINDOW: usize = 20;
@@ -67,11 +68,14 @@ pub fn learn(objective: &Objective, start: Mat<f64>, optimiser: &Optimiser) -> L
         faded = [faded[0] * FADE[0], faded[1] * FADE[1]];
         for k in 0..columns {
             let states = column_mut(&mut mean, k).iter_mut().zip(column_mut(&mut square, k));
-            for ((x, g), (m, s)) in column_mut(&mut components, k).iter_mut().zip(column(&gradient, k)).zip(states) {
-                *m = FADE[0] * *m + (1.0 - FADE[0]) * g;
-                *s = FADE[1] * *s + (1.0 - FADE[1]) * g * g;
-                *x -= optimiser.rate * (*m / (1.0 - faded[0])) / ((*s / (1.0 - faded[1])).sqrt() + 1e-8);
-            }
+            let points = column_mut(&mut components, k).iter_mut().zip(column(&gradient, k));
+            vectorised(|| {
+                for ((x, g), (m, s)) in points.zip(states) {
+                    *m = FADE[0] * *m + (1.0 - FADE[0]) * g;
+                    *s = FADE[1] * *s + (1.0 - FADE[1]) * g * g;
+                    *x -= optimiser.rate * (*m / (1.0 - faded[0])) / ((*s / (1.0 - faded[1])).sqrt() + 1e-8);
+                }
+            });
         }
         let (value, terms) = objective.evaluate(&components, &mut gradient);
         best.history.push(value);

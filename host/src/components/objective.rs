@@ -4,6 +4,7 @@ use faer::{Mat, MatRef};
 
 use super::factor::{Factors, column, column_mut, product};
 use crate::rig::Rig;
+use crate::vector::{Work, vectorised};
 
 /// Bones shorter than this are joints in one place, m.
 const SHORTEST_BONE: f64 = 1e-4;
@@ -73,7 +74,7 @@ pub struct Objective<'a> {
     content: &'a Factors,
     style_gram: Mat<f64>,
     bones: &'a [Bone],
-    /// Bones of the mean pose, `[3 bones]`, and rest lengths, in deviations.
+    /// Bones of the mean pose, all x, all y, all z, and rest lengths, in deviations.
     mean: Vec<f64>,
     lengths: Vec<f64>,
     /// `W' (D1' D1 / v + D2' D2 / a) W / 2`.
@@ -91,13 +92,13 @@ impl<'a> Objective<'a> {
         weights: Weights,
     ) -> Self {
         let at = |joint: usize, c: usize| mean[3 * joint + c] / scale;
-        let between = |bone: &Bone| std::array::from_fn::<f64, 3, _>(|c| at(bone.joints[1], c) - at(bone.joints[0], c));
+        let between = |c: usize| bones.iter().map(move |bone| at(bone.joints[1], c) - at(bone.joints[0], c));
         Self {
             weights,
             content,
             style_gram: gram(style.components.as_ref()),
             bones,
-            mean: bones.iter().flat_map(between).collect(),
+            mean: (0..3).flat_map(between).collect(),
             lengths: bones.iter().map(|bone| bone.length / scale).collect(),
             smooth: smoothness(content),
         }
@@ -137,43 +138,71 @@ impl<'a> Objective<'a> {
 
     fn add_bones(&self, components: &Mat<f64>, weight: f64, gradient: &mut Mat<f64>) -> f64 {
         let weights = &self.content.weights;
-        let mut edges = Mat::zeros(3 * self.bones.len(), components.ncols());
+        let count = self.bones.len();
+        // All x, all y, all z: so that the loop over bones below is one of vectors.
+        let mut edges = Mat::zeros(3 * count, components.ncols());
         for k in 0..components.ncols() {
             let (from, to) = (column(components, k), column_mut(&mut edges, k));
-            for (bone, edge) in self.bones.iter().zip(to.as_chunks_mut::<3>().0) {
-                let [parent, child] = bone.joints;
-                *edge = std::array::from_fn(|c| from[3 * child + c] - from[3 * parent + c]);
+            for (b, Bone { joints: [parent, child], .. }) in self.bones.iter().enumerate() {
+                (0..3).for_each(|c| to[c * count + b] = from[3 * child + c] - from[3 * parent + c]);
             }
         }
         // One frame a column; turned into the gradient in place.
         let mut frames = product(edges.as_ref(), weights.transpose());
         let share = 1.0 / weights.nrows().max(1) as f64;
-        let mut sum = 0.0;
-        for f in 0..frames.ncols() {
-            let edges = column_mut(&mut frames, f).as_chunks_mut::<3>().0;
-            for ((edge, mean), rest) in edges.iter_mut().zip(self.mean.as_chunks::<3>().0).zip(&self.lengths) {
-                let [x, y, z] = [edge[0] + mean[0], edge[1] + mean[1], edge[2] + mean[2]];
-                let length = (x * x + y * y + z * z).sqrt();
-                let error = length - rest;
-                sum += error * error;
-                // A bone of no length has no direction to grow in.
-                let factor = if length > 1e-12 { 2.0 * share * weight * error / length } else { 0.0 };
-                *edge = [factor * x, factor * y, factor * z];
-            }
-        }
+        let mut squares = vec![0.0; count];
+        vectorised(Pull { objective: self, frames: &mut frames, factor: 2.0 * share * weight, squares: &mut squares });
+        let sum: f64 = squares.iter().sum();
         let slopes = product(frames.as_ref(), weights.as_ref());
         for k in 0..components.ncols() {
-            let to = column_mut(gradient, k);
-            for (bone, slope) in self.bones.iter().zip(column(&slopes, k).as_chunks::<3>().0) {
-                let [parent, child] = bone.joints;
+            let (to, slope) = (column_mut(gradient, k), column(&slopes, k));
+            for (b, Bone { joints: [parent, child], .. }) in self.bones.iter().enumerate() {
                 for c in 0..3 {
-                    to[3 * child + c] += slope[c];
-                    to[3 * parent + c] -= slope[c];
+                    to[3 * child + c] += slope[c * count + b];
+                    to[3 * parent + c] -= slope[c * count + b];
                 }
             }
         }
         sum * share
     }
+}
+
+/// Turns the bones of every frame, without the mean pose, into `factor * error` times their direction; adds squared errors.
+struct Pull<'a> {
+    objective: &'a Objective<'a>,
+    frames: &'a mut Mat<f64>,
+    factor: f64,
+    squares: &'a mut [f64],
+}
+
+impl Work for Pull<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { objective, frames, factor, squares } = self;
+        let count = squares.len();
+        let [mean_x, mean_y, mean_z] = thirds(&objective.mean, count);
+        let lengths = &objective.lengths[..count];
+        for f in 0..frames.ncols() {
+            let (x, rest) = column_mut(frames, f).split_at_mut(count);
+            let (y, z) = rest.split_at_mut(count);
+            let z = &mut z[..count];
+            for b in 0..count {
+                let (px, py, pz) = (x[b] + mean_x[b], y[b] + mean_y[b], z[b] + mean_z[b]);
+                let length = (px * px + py * py + pz * pz).sqrt();
+                let error = length - lengths[b];
+                squares[b] += error * error;
+                // A bone of no length has no direction to grow in.
+                let pull = if length > 1e-12 { factor * error / length } else { 0.0 };
+                (x[b], y[b], z[b]) = (pull * px, pull * py, pull * pz);
+            }
+        }
+    }
+}
+
+fn thirds(all: &[f64], count: usize) -> [&[f64]; 3] {
+    [&all[..count], &all[count..2 * count], &all[2 * count..3 * count]]
 }
 
 /// First and second differences of the weights, each relative to how fast the content moves.
