@@ -3,6 +3,8 @@
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatRef, Par};
 
+use crate::vector::vectorised;
+
 /// `M ~ W C`. Column `k` of `weights` is the time course of component `k`, at most one in root mean square; column `k` of
 /// `components` holds its `[3 joints]` directions, in deviations.
 #[derive(Clone, Debug)]
@@ -154,9 +156,11 @@ fn update_weights(weights: &mut Mat<f64>, cross: &Mat<f64>, outer: &Mat<f64>, bo
 /// `cross_k - sum over j != k of factor_j gram_jk`.
 fn rest(factor: &Mat<f64>, cross: &Mat<f64>, gram: &Mat<f64>, k: usize, out: &mut [f64]) {
     out.copy_from_slice(column(cross, k));
-    for (j, weight) in column(gram, k).iter().enumerate().filter(|(j, _)| *j != k) {
-        out.iter_mut().zip(column(factor, j)).for_each(|(out, x)| *out -= weight * x);
-    }
+    vectorised(|| {
+        for (j, weight) in column(gram, k).iter().enumerate().filter(|(j, _)| *j != k) {
+            out.iter_mut().zip(column(factor, j)).for_each(|(out, x)| *out -= weight * x);
+        }
+    });
 }
 
 /// `a b` on one thread: the same bits on every run.

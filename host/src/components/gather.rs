@@ -4,6 +4,7 @@ use faer::{Mat, MatRef};
 use nalgebra::{Matrix3, SymmetricEigen};
 
 use super::factor::{Factors, column_mut};
+use super::small::dot;
 
 /// `count` components, from the three main directions of every joint, joined pair by pair where it costs least.
 ///
@@ -98,8 +99,4 @@ fn join(a: &Part, b: &Part) -> Part {
     let component: Vec<f64> = a.component.iter().zip(&b.component).map(|(a, b)| u * a + v * b).collect();
     let energy = dot(&component, &component);
     Part { weights, component, energy }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
