@@ -7,6 +7,7 @@
 pub mod align;
 pub mod clip;
 pub mod components;
+pub mod embed;
 pub mod files;
 pub mod gait;
 pub mod mechanics;

@@ -6,6 +6,7 @@
 //! |---|---|
 //! | [`read`], [`read_with`] | any accepted file to a [`Clip`], chosen by content |
 //! | [`bvh`] | the BVH parser and [`Clip::write_bvh`] |
+//! | [`write`](Clip::write) | a clip to a file of the format that its name says: BVH, glTF ([`gltf`]), table of angles ([`angles`]) |
 //! | [`kinect`] | Kinect CSV recordings: positions, resampled and fitted with a skeleton |
 //! | [`map`] | which joint is the pelvis, the left knee, ...: known layouts, map files, mirror partners |
 //! | [`units`] | what a file's numbers mean: unit of length, up axis |
@@ -14,8 +15,10 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
+pub mod angles;
 pub mod bvh;
 mod error;
+pub mod gltf;
 pub mod kinect;
 mod kinematics;
 pub mod map;
@@ -25,6 +28,7 @@ mod resample;
 pub mod solve;
 mod summary;
 pub mod units;
+mod write;
 
 pub use bvh::write::{WriteError, WriteOptions};
 pub use error::ReadError;
@@ -34,6 +38,7 @@ pub use read::{ReadOptions, read, read_with};
 pub use resample::ResampleError;
 pub use summary::Summary;
 pub use units::{Unit, UpAxis};
+pub use write::Format;
 
 /// One joint of a [`Skeleton`].
 #[derive(Clone, Debug, PartialEq)]

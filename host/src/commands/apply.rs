@@ -18,19 +18,20 @@ use serde::Serialize;
 
 use super::clips::Reading;
 use super::mask;
-use super::output::{check_output, print_json, spinner};
+use super::output::{check_motion, print_json, spinner};
 
-/// Play a clip through a pack, frame by frame as the device would, and write the result as BVH
+/// Play a clip through a pack, frame by frame as the device would, and write the result
 ///
 /// For packs of translators and of style components.
 ///
 /// The clip may have another skeleton and frame rate than the pack: it is put on the pack's skeleton, and the result is
-/// written on that skeleton, in centimetres, at the pack's frame rate.
+/// written on that skeleton, at the pack's frame rate: BVH in centimetres, glTF in metres.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
   kinesic apply angry.kin walk.bvh --out angry-walk.bvh
   kinesic apply angry.kin walk.bvh --out a-little.bvh --strength 0.4
+  kinesic apply angry.kin walk.bvh --out angry-walk.glb
   kinesic apply angry.kin walk.bvh --out arms-only.bvh --mask '*=0,LeftArm+=1,r_shoulder+=1'
   kinesic apply child.kin jump.csv --out child-jump.bvh --timing learned
   kinesic apply components.kin --stored --out stored.bvh")]
@@ -44,8 +45,8 @@ pub struct Args {
     /// Play the motion that a pack of style components stores, instead of a clip
     #[arg(long, conflicts_with = "clip")]
     stored: bool,
-    /// BVH to write
-    #[arg(long, value_name = "FILE.bvh")]
+    /// Motion to write, in the format that its name says: .bvh, .glb or .gltf (glTF 2.0), .csv (joint angles)
+    #[arg(long, value_name = "FILE")]
     out: PathBuf,
     /// 0 = the clip itself, 1 = the style as learned, beyond = exaggerated
     #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
@@ -83,7 +84,7 @@ struct Summary {
 
 /// Runs the command.
 pub fn run(args: &Args) -> miette::Result<()> {
-    check_output(&args.out, "bvh")?;
+    check_motion(&args.out)?;
     if !args.strength.is_finite() {
         return Err(miette!("--strength {}: expected a number, usually from 0 to 1", args.strength));
     }
@@ -104,7 +105,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     };
     let played = play(args, &pack, &rig, clip.as_ref(), controls)?;
     let styled = rig.clip(&played.poses, 1.0 / fps);
-    styled.write_bvh(&args.out).into_diagnostic()?;
+    styled.write(&args.out).into_diagnostic()?;
     bar.finish_and_clear();
     let summary = Summary {
         out: args.out.display().to_string(),

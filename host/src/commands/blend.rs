@@ -38,8 +38,8 @@ pub struct Args {
     /// When the second clip begins, s (default: with the earlier window)
     #[arg(long, value_name = "SECONDS")]
     second_start: Option<f32>,
-    /// BVH to write
-    #[arg(long, value_name = "FILE.bvh")]
+    /// Motion to write: .bvh, .glb, .gltf or .csv
+    #[arg(long, value_name = "FILE")]
     out: PathBuf,
     /// Random seed; blending makes no random choice
     #[arg(long, default_value_t = 1)]

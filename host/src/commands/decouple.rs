@@ -24,11 +24,11 @@ pub struct Args {
     /// Clip to split
     #[arg(value_name = "CLIP")]
     clip: PathBuf,
-    /// BVH to write: the pose without expression
-    #[arg(long, value_name = "FILE.bvh", required_unless_present = "expressive")]
+    /// Motion to write (.bvh, .glb, .gltf or .csv): the pose without expression
+    #[arg(long, value_name = "FILE", required_unless_present = "expressive")]
     mechanics: Option<PathBuf>,
-    /// BVH to write: what expression adds, on the rest pose
-    #[arg(long, value_name = "FILE.bvh")]
+    /// Motion to write: what expression adds, on the rest pose
+    #[arg(long, value_name = "FILE")]
     expressive: Option<PathBuf>,
     /// Random seed; decoupling makes no random choice
     #[arg(long, default_value_t = 1)]

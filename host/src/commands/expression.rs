@@ -57,9 +57,9 @@ impl Body {
         self.rig.clip(poses, 1.0 / self.fps)
     }
 
-    /// Writes poses as BVH.
+    /// Writes poses in the format that the path says.
     pub fn write(&self, poses: &[Pose<MAX_JOINTS>], path: &Path) -> miette::Result<()> {
-        self.clip(poses).write_bvh(path).into_diagnostic()
+        self.clip(poses).write(path).into_diagnostic()
     }
 
     /// Amount and mask, see [`super::mask`].
@@ -88,7 +88,7 @@ pub fn window(text: &str) -> Result<[f32; 2], String> {
     }
 }
 
-/// An output that must be .bvh.
+/// Outputs that must be motions.
 pub fn outputs(paths: &[&PathBuf]) -> miette::Result<()> {
-    paths.iter().try_for_each(|path| super::output::check_output(path, "bvh"))
+    paths.iter().try_for_each(|path| super::output::check_motion(path))
 }

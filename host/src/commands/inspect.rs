@@ -49,7 +49,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
 }
 
 /// By name, or by content: a damaged pack should be refused as a pack.
-fn is_pack(path: &Path) -> bool {
+pub fn is_pack(path: &Path) -> bool {
     let starts = || {
         let mut head = [0; 4];
         let read = std::fs::File::open(path).and_then(|mut file| std::io::Read::read_exact(&mut file, &mut head));

@@ -41,8 +41,8 @@ pub struct Args {
     /// be repeated)
     #[arg(long, value_name = "JOINT=WEIGHT")]
     mask: Vec<String>,
-    /// BVH to write
-    #[arg(long, value_name = "FILE.bvh")]
+    /// Motion to write: .bvh, .glb, .gltf or .csv
+    #[arg(long, value_name = "FILE")]
     out: PathBuf,
     /// Random seed; mixing makes no random choice
     #[arg(long, default_value_t = 1)]

@@ -3,9 +3,11 @@
 mod apply;
 mod blend;
 mod clips;
+mod completions;
 mod decouple;
 mod demo;
 mod eval;
+mod export;
 mod expression;
 mod inspect;
 mod mask;
@@ -47,6 +49,8 @@ enum Command {
     Modulate(modulate::Args),
     Mix(mix::Args),
     Blend(blend::Args),
+    Export(export::Args),
+    Completions(completions::Args),
 }
 
 /// Runs a command line.
@@ -61,5 +65,7 @@ pub fn run(cli: Cli) -> miette::Result<()> {
         Command::Modulate(args) => modulate::run(&args),
         Command::Mix(args) => mix::run(&args),
         Command::Blend(args) => blend::run(&args),
+        Command::Export(args) => export::run(&args),
+        Command::Completions(args) => completions::run(&args),
     }
 }

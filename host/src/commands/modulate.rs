@@ -30,8 +30,8 @@ pub struct Args {
     /// Weight of a joint, JOINT=WEIGHT, or of all from it downwards, JOINT+=WEIGHT: 0 keeps the motion (may be repeated)
     #[arg(long, value_name = "JOINT=WEIGHT")]
     mask: Vec<String>,
-    /// BVH to write
-    #[arg(long, value_name = "FILE.bvh")]
+    /// Motion to write: .bvh, .glb, .gltf or .csv
+    #[arg(long, value_name = "FILE")]
     out: PathBuf,
     /// Random seed; modulation makes no random choice
     #[arg(long, default_value_t = 1)]

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
+use kinesic_host::clip::Format;
 use kinesic_host::files;
 use miette::{IntoDiagnostic, WrapErr, miette};
 use serde::Serialize;
@@ -29,6 +30,22 @@ pub fn check_output(path: &Path, extension: &str) -> miette::Result<()> {
             path.display()
         ));
     }
+    check_folder(path)
+}
+
+/// As [`check_output`], for a motion: its extension says the format.
+pub fn check_motion(path: &Path) -> miette::Result<()> {
+    if Format::of(path).is_none() {
+        return Err(miette!(
+            help = format!("name it {}", path.with_extension("bvh").display()),
+            "{}: the output is a .bvh, .glb, .gltf or .csv file",
+            path.display()
+        ));
+    }
+    check_folder(path)
+}
+
+fn check_folder(path: &Path) -> miette::Result<()> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if !folder.is_dir() {
         return Err(miette!(

@@ -39,6 +39,12 @@ pub enum WriteError {
         /// What the system said.
         error: String,
     },
+    /// A name that says no format.
+    #[error("{}: motions are written as .bvh, .glb, .gltf or .csv. Name it {}", path.display(), path.with_extension("bvh").display())]
+    Format {
+        /// The file that was to be written.
+        path: PathBuf,
+    },
     /// No joints or no frames.
     #[error("the clip has {joints} joints and {frames} frames, expected at least one of each")]
     Empty {
@@ -129,7 +135,8 @@ impl Clip {
     }
 }
 
-fn check(clip: &Clip) -> Result<(), WriteError> {
+/// What every writer asks of a clip.
+pub(in crate::clip) fn check(clip: &Clip) -> Result<(), WriteError> {
     let (joints, frames) = (&clip.skeleton.joints, clip.frames());
     if joints.is_empty() || frames == 0 {
         return Err(WriteError::Empty { joints: joints.len(), frames });

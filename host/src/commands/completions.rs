@@ -1,0 +1,25 @@
+//! `kinesic completions`.
+
+use clap::CommandFactory;
+use clap_complete::Shell;
+
+use super::Cli;
+
+/// Print a script that completes this command's words in a shell
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  kinesic completions bash > ~/.local/share/bash-completion/completions/kinesic
+  kinesic completions zsh > ~/.zfunc/_kinesic
+  kinesic completions fish > ~/.config/fish/completions/kinesic.fish")]
+pub struct Args {
+    /// The shell
+    #[arg(value_name = "SHELL")]
+    shell: Shell,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> miette::Result<()> {
+    clap_complete::generate(args.shell, &mut Cli::command(), "kinesic", &mut std::io::stdout());
+    Ok(())
+}

@@ -1,0 +1,76 @@
+//! `kinesic export`.
+
+use std::path::PathBuf;
+
+use kinesic_host::clip;
+use kinesic_host::embed;
+use kinesic_host::pack::PackFile;
+use miette::{IntoDiagnostic, miette};
+use serde::Serialize;
+
+use super::clips::Reading;
+use super::inspect::is_pack;
+use super::output::{check_motion, check_output, print_json, write_whole};
+
+/// Write a clip in another format, or a pack as Rust source
+///
+/// A clip keeps its skeleton, its frame rate and its motion. BVH is in centimetres; glTF 2.0 in metres, +Y up, one key a frame, the
+/// root's path as the translation of the first node; CSV is a table of joint angles in degrees.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  kinesic export walk.bvh --out walk.glb
+  kinesic export walk.bvh --out walk-angles.csv
+  kinesic export --rust angry.kin --out src/pack.rs")]
+pub struct Args {
+    /// A clip (BVH, Kinect CSV), or a pack with --rust
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// Write a pack as a Rust module: its bytes, aligned, and the capacities that they need as constants
+    #[arg(long)]
+    rust: bool,
+    /// File to write: .bvh, .glb, .gltf or .csv for a clip, .rs with --rust
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    /// Print one JSON object: out, bytes
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    reading: Reading,
+}
+
+#[derive(Serialize)]
+struct Summary {
+    out: String,
+    bytes: u64,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> miette::Result<()> {
+    if args.rust {
+        check_output(&args.out, "rs")?;
+        let file = PackFile::read(&args.file).into_diagnostic()?;
+        let name = args.file.file_name().unwrap_or_default().to_string_lossy();
+        let module = embed::rust_module(&file, &name).into_diagnostic()?;
+        write_whole(&args.out, module.as_bytes())?;
+    } else {
+        check_motion(&args.out)?;
+        if is_pack(&args.file) {
+            return Err(miette!(
+                help =
+                    "write it as Rust source with --rust --out pack.rs, or play a clip through it with kinesic apply",
+                "{}: a pack is no motion",
+                args.file.display()
+            ));
+        }
+        let clip = clip::read_with(&args.file, &args.reading.options()?).into_diagnostic()?;
+        clip.write(&args.out).into_diagnostic()?;
+    }
+    let bytes = std::fs::metadata(&args.out).map_or(0, |meta| meta.len());
+    let summary = Summary { out: args.out.display().to_string(), bytes };
+    if args.json {
+        return print_json(&summary);
+    }
+    println!("{}: {} bytes", summary.out, summary.bytes);
+    Ok(())
+}

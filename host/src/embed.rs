@@ -1,0 +1,93 @@
+//! A pack as Rust source: bytes that are aligned, and the capacities that they need as constants.
+
+use std::fmt::Write;
+
+use kinesic::model::{LoadError, ModelMeta};
+
+use crate::mechanics::HostMechanics;
+use crate::pack::PackFile;
+
+/// Bytes on a line of the source.
+const LINE: usize = 30;
+
+/// A module with the constants `JOINTS`, `FRAME_RATE`, those of each engine that the pack holds, and `PACK`: the bytes, aligned as
+/// the device wants them. It needs nothing, not even `std`.
+pub fn rust_module(file: &PackFile, origin: &str) -> Result<String, LoadError> {
+    let pack = file.pack()?;
+    let metadata = pack.metadata();
+    let bytes = file.bytes();
+    let mut out = String::new();
+    // Writing to a String cannot fail.
+    let _ = writeln!(
+        out,
+        "//! Pack {:?}, made by `kinesic export --rust` from {origin:?}. Made again, not edited.",
+        metadata.name
+    );
+    for meta in metadata.models.iter() {
+        out.push_str("//!\n//! ```text\n");
+        let (model, state) = engine(&meta);
+        let _ = writeln!(
+            out,
+            "//! let pack = kinesic::Pack::load(PACK)?;\n//! let model = kinesic::{model}::load(&pack)?;"
+        );
+        let _ = writeln!(out, "//! let mut state = kinesic::{state}::new();\n//! ```");
+    }
+    let mut constant = |doc: &str, name: &str, value: &dyn std::fmt::Display, kind: &str| {
+        let _ = write!(out, "\n/// {doc}.\n#[allow(dead_code)]\npub const {name}: {kind} = {value};\n");
+    };
+    constant("Joints of a pose", "JOINTS", &metadata.joints.iter().count(), "usize");
+    constant(
+        "Frames a second at which the pack is stepped",
+        "FRAME_RATE",
+        &format!("{:?}", metadata.frame_rate),
+        "f32",
+    );
+    for meta in metadata.models.iter() {
+        match meta {
+            ModelMeta::Translator(meta) => {
+                constant("Filter states of the translator", "STATES", &(2 * meta.blocks + meta.drives), "usize");
+            }
+            ModelMeta::Mechanics(meta) => {
+                constant("Units of the widest layer of body mechanics", "UNITS", &meta.hidden.max(meta.code), "usize");
+                constant(
+                    "Frames of memory of body mechanics",
+                    "WINDOW",
+                    &HostMechanics::load(&pack)?.features().window(),
+                    "usize",
+                );
+            }
+            ModelMeta::Components(meta) => {
+                constant("Style components", "COMPONENTS", &meta.count, "usize");
+            }
+        }
+    }
+    let _ = write!(
+        out,
+        "\n/// Bytes at an address that packs want.\n#[repr(C, align({}))]\nstruct Aligned([u8; {}]);\n",
+        kinesic::model::ALIGNMENT,
+        bytes.len()
+    );
+    let _ = write!(
+        out,
+        "\n/// The pack, {} bytes, used where it lies.\npub static PACK: &[u8] = &ALIGNED.0;\n",
+        bytes.len()
+    );
+    out.push_str("\n#[rustfmt::skip]\nstatic ALIGNED: Aligned = Aligned(*b\"\\\n");
+    for line in bytes.chunks(LINE) {
+        for byte in line {
+            let _ = write!(out, "\\x{byte:02x}");
+        }
+        out.push_str("\\\n");
+    }
+    out.push_str("\");\n");
+    Ok(out)
+}
+
+/// The types of an engine with the module's constants as capacities.
+fn engine(meta: &ModelMeta) -> (&'static str, &'static str) {
+    match meta {
+        ModelMeta::Translator(_) => ("Translator::<JOINTS, STATES>", "TranslatorState"),
+        ModelMeta::Mechanics(_) => ("BodyMechanics::<JOINTS, UNITS, WINDOW>", "MechanicsState"),
+        ModelMeta::Components(_) => ("Components::<JOINTS, COMPONENTS>", "ComponentsState"),
+    }
+}
