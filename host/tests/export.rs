@@ -93,7 +93,7 @@ fn another_reader_finds_the_same_joints_in_gltf() {
     for out in ["o.bvh", "o.glb", "o.gltf", "o.csv"] {
         apply(out);
     }
-    let clip = clip::read(&at.join("o.bvh")).unwrap();
+    let clip = clip::read(at.join("o.bvh")).unwrap();
     let binary = play(gltf::Gltf::open(at.join("o.glb")).unwrap(), None);
     assert!(farthest(&binary, &clip) < 1e-4, "{} m", farthest(&binary, &clip));
     // Rate, duration, names, root motion.
@@ -149,7 +149,7 @@ fn gltf_of_real_clips_has_the_same_joints() {
     let out = tempfile::tempdir().unwrap();
     // Every two hundredth clip of the manifest: all formats and skeletons are among them.
     for row in table(&folder.join("manifest.tsv")).iter().step_by(200) {
-        let clip = clip::read(&folder.join(&row["file"])).unwrap();
+        let clip = clip::read(folder.join(&row["file"])).unwrap();
         let path = out.path().join("clip.glb");
         clip.write(&path).unwrap();
         let played = play(gltf::Gltf::open(&path).unwrap(), None);
@@ -162,7 +162,7 @@ fn the_table_of_angles_gives_the_motion_back() {
     let folder = demo();
     let at = folder.path();
     succeed(&["export", "weary.bvh", "--out", "w.csv"], at);
-    let clip = clip::read(&at.join("weary.bvh")).unwrap();
+    let clip = clip::read(at.join("weary.bvh")).unwrap();
     let mut reader = csv::Reader::from_path(at.join("w.csv")).unwrap();
     let headers: Vec<String> = reader.headers().unwrap().iter().map(str::to_owned).collect();
     assert_eq!(headers[..6], ["frame", "time_s", "Hips_x_m", "Hips_y_m", "Hips_z_m", "Hips_z_deg"]);
