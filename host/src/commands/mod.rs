@@ -1,5 +1,8 @@
 //! The subcommands. Each file reads its arguments, calls the library and prints.
 
+#[macro_use]
+mod say;
+
 mod apply;
 mod blend;
 mod clips;
@@ -62,4 +65,9 @@ pub fn run(cli: Cli) -> miette::Result<()> {
         Command::Mix(args) => mix::run(&args),
         Command::Blend(args) => blend::run(&args),
     }
+}
+
+/// Prints why a command failed.
+pub fn complain(report: &miette::Report) {
+    eprintln!("{report:?}");
 }
