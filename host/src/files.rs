@@ -16,5 +16,7 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     }
     let mut file = builder.prefix(".kinesic").tempfile_in(folder)?;
     file.write_all(bytes)?;
+    // On the disk before it has the name: after a power cut there is the old file or the new one, not an empty one.
+    file.as_file().sync_all()?;
     file.persist(path).map(|_| ()).map_err(|e| e.error)
 }

@@ -13,7 +13,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(report) => {
             // One line a cause, for people and for scripts alike.
-            eprintln!("{report:?}");
+            commands::complain(&report);
             ExitCode::FAILURE
         }
     }

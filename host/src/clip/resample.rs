@@ -11,7 +11,25 @@ pub enum ResampleError {
         /// What was asked for.
         found: f64,
     },
+    /// More than fits into the memory of a workstation.
+    #[error(
+        "{seconds:.0} s of {joints} joints at {fps} frames per second are {rotations:.1e} rotations, at most {MAX_ROTATIONS:.1e} \
+         are taken: ask for a lower rate, or cut the clip"
+    )]
+    TooLong {
+        /// Length of the clip, s.
+        seconds: f64,
+        /// Its joints.
+        joints: usize,
+        /// The rate asked for.
+        fps: f64,
+        /// Frames times joints.
+        rotations: f64,
+    },
 }
+
+/// Most rotations of a clip: 3 GB, or four hours of 60 joints at 120 frames per second.
+const MAX_ROTATIONS: f64 = 1e8;
 
 /// Frame times are written with few digits (0.0333333): a ratio this near to a whole number is meant to be it.
 const RATIO_TOLERANCE: f64 = 1e-3;
@@ -25,6 +43,11 @@ impl Clip {
     pub fn resample(&self, fps: f64) -> Result<Clip, ResampleError> {
         if !(0.1..=10_000.0).contains(&fps) {
             return Err(ResampleError::Rate { found: fps });
+        }
+        let joints = self.skeleton.len();
+        let rotations = (1.0 + self.duration() * fps) * joints as f64;
+        if rotations > MAX_ROTATIONS {
+            return Err(ResampleError::TooLong { seconds: self.duration(), joints, fps, rotations });
         }
         let ratio = self.fps() / fps;
         let whole = ratio.round();

@@ -12,7 +12,7 @@ use kinesic_host::pack::PackFile;
 use kinesic_host::prepare::Source;
 use kinesic_host::quality::{self, Quality};
 use kinesic_host::rig::{MAX_JOINTS, Rig};
-use kinesic_host::translate::{self, Timing};
+use kinesic_host::translate::{self, TIMING_STRENGTH, Timing};
 use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
 
@@ -87,6 +87,14 @@ pub fn run(args: &Args) -> miette::Result<()> {
     check_motion(&args.out)?;
     if !args.strength.is_finite() {
         return Err(miette!("--strength {}: expected a number, usually from 0 to 1", args.strength));
+    }
+    if matches!(args.timing, Clock::Learned) && args.strength.abs() > TIMING_STRENGTH {
+        return Err(miette!(
+            help = "choose a smaller strength, or keep the clip's timing (--timing keep)",
+            "--strength {} with --timing learned: expected {} to {TIMING_STRENGTH}",
+            args.strength,
+            -TIMING_STRENGTH
+        ));
     }
     let file = PackFile::read(&args.pack).into_diagnostic()?;
     let pack = file.pack().into_diagnostic()?;

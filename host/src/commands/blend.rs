@@ -7,7 +7,7 @@ use kinesic_host::mechanics::{Overlap, blend};
 use serde::Serialize;
 
 use super::clips::Reading;
-use super::expression::{Body, outputs, window};
+use super::expression::{Body, outputs, time, window};
 use super::output::{print_json, spinner};
 
 /// Pass from one motion to another, mechanics and expression each in a time of their own
@@ -36,7 +36,7 @@ pub struct Args {
     #[arg(long, value_name = "T0..T1", value_parser = window)]
     expressive_window: [f32; 2],
     /// When the second clip begins, s (default: with the earlier window)
-    #[arg(long, value_name = "SECONDS")]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     second_start: Option<f32>,
     /// Motion to write: .bvh, .glb, .gltf or .csv
     #[arg(long, value_name = "FILE")]
@@ -72,6 +72,9 @@ pub fn run(args: &Args) -> miette::Result<()> {
             "{}: it lasts {seconds:.2} s, a window begins after its end",
             first.name
         ));
+    }
+    if let Some(start) = args.second_start {
+        time("--second-start", f64::from(start), f64::from(seconds), &first.name)?;
     }
     let frame = |seconds: f32| seconds.max(0.0) * body.fps as f32;
     let frames = |[start, end]: [f32; 2]| Window { start: frame(start), end: frame(end) };

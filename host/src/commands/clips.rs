@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use kinesic_host::clip::{ReadOptions, SkeletonMap, Unit, UpAxis};
+use kinesic_host::prepare::fingerprint;
 use miette::{IntoDiagnostic, miette};
 
 /// How clips are read.
@@ -25,6 +26,14 @@ impl Reading {
     pub fn options(&self) -> miette::Result<ReadOptions> {
         let map = self.map.as_ref().map(SkeletonMap::read).transpose().into_diagnostic()?;
         Ok(ReadOptions { units: self.units, up: self.up, map, ..ReadOptions::default() })
+    }
+}
+
+impl Reading {
+    /// Everything here that decides what a clip becomes.
+    pub fn deciding(&self) -> miette::Result<String> {
+        let map = self.map.as_ref().map(|path| fingerprint(path)).transpose().into_diagnostic()?;
+        Ok(format!("{map:?} {:?} {:?}", self.units, self.up))
     }
 }
 

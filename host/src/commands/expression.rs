@@ -9,7 +9,7 @@ use kinesic_host::mechanics::decouple;
 use kinesic_host::pack::PackFile;
 use kinesic_host::prepare::Source;
 use kinesic_host::rig::{MAX_JOINTS, Rig};
-use miette::IntoDiagnostic;
+use miette::{IntoDiagnostic, miette};
 
 use super::clips::Reading;
 use super::mask;
@@ -64,6 +64,9 @@ impl Body {
 
     /// Amount and mask, see [`super::mask`].
     pub fn modulation(&self, amount: f32, masks: &[String]) -> miette::Result<Modulation<MAX_JOINTS>> {
+        if !amount.is_finite() {
+            return Err(miette!("--amount {amount}: expected a finite number, for example 1.5"));
+        }
         let mut modulation = Modulation { amount, ..Modulation::default() };
         mask::apply(masks, &self.rig, f32::MAX, &mut modulation.mask)?;
         Ok(modulation)
@@ -86,6 +89,20 @@ pub fn window(text: &str) -> Result<[f32; 2], String> {
         Some([start, end]) if f32::is_finite(start) && f32::is_finite(end) && start <= end => Ok([start, end]),
         _ => Err("expected T0..T1 in seconds, T0 not after T1, for example 1.0..1.5".to_owned()),
     }
+}
+
+/// A time within a motion of `seconds`.
+pub fn time(option: &str, time: f64, seconds: f64, clip: &str) -> miette::Result<()> {
+    if !(time.is_finite() && time >= 0.0) {
+        return Err(miette!("{option} {time}: expected seconds from 0 up"));
+    }
+    if time > seconds {
+        return Err(miette!(
+            help = "give an earlier time",
+            "{option} {time}: {clip} lasts {seconds:.2} s, that is past its end"
+        ));
+    }
+    Ok(())
 }
 
 /// Outputs that must be motions.

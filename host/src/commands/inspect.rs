@@ -216,7 +216,7 @@ fn pack(path: &Path, json: bool) -> miette::Result<()> {
     if let Some(provenance) = &report.provenance {
         println!("made by    {} with: {}", provenance.tool, provenance.command);
         for input in &provenance.inputs {
-            println!("trained on {} (sha256 {})", input.path, &input.sha256[..16.min(input.sha256.len())]);
+            println!("trained on {} (sha256 {})", input.path, input.sha256.chars().take(16).collect::<String>());
         }
         for metric in &provenance.metrics {
             println!("           {:<24} {:.2}", metric.name, metric.value);

@@ -6,7 +6,7 @@ use kinesic_host::mechanics::mix;
 use serde::Serialize;
 
 use super::clips::Reading;
-use super::expression::{Body, outputs};
+use super::expression::{Body, Motion, outputs, time};
 use super::output::{print_json, spinner};
 
 /// Perform one motion's mechanics with another's expression
@@ -29,10 +29,10 @@ pub struct Args {
     #[arg(long, value_name = "CLIP")]
     expressive: PathBuf,
     /// Where the mechanics begin in their clip, s
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_negative_numbers = true)]
     mechanics_start: f64,
     /// Where the expression begins in its clip, s
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_negative_numbers = true)]
     expressive_start: f64,
     /// Expression: 0 = none, 1 = as it is
     #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
@@ -69,15 +69,14 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let modulation = body.modulation(args.amount, &args.mask)?;
     let mechanics = body.decouple(&args.mechanics, &args.reading)?;
     let expressive = body.decouple(&args.expressive, &args.reading)?;
-    let skip = |seconds: f64| (seconds.max(0.0) * body.fps).round() as usize;
-    let rest_of = |parts: &[_], seconds: f64, name: &str| {
-        let rest = parts.get(skip(seconds)..).filter(|rest| !rest.is_empty()).map(<[_]>::to_vec);
-        rest.ok_or_else(|| {
-            miette::miette!("{name}: it has {:.2} s, {seconds} s is past its end", parts.len() as f64 / body.fps)
-        })
+    let rest_of = |motion: &Motion, option: &str, seconds: f64| {
+        // The last frame is part of the clip.
+        time(option, seconds, motion.parts.len().saturating_sub(1) as f64 / body.fps, &motion.name)?;
+        let skipped = (seconds * body.fps).round() as usize;
+        Ok::<_, miette::Report>(motion.parts.iter().skip(skipped).copied().collect::<Vec<_>>())
     };
-    let a = rest_of(&mechanics.parts, args.mechanics_start, &mechanics.name)?;
-    let b = rest_of(&expressive.parts, args.expressive_start, &expressive.name)?;
+    let a = rest_of(&mechanics, "--mechanics-start", args.mechanics_start)?;
+    let b = rest_of(&expressive, "--expressive-start", args.expressive_start)?;
     let mixed = mix(&a, &b, &modulation);
     body.write(&mixed, &args.out)?;
     bar.finish_and_clear();

@@ -1,5 +1,8 @@
 //! The subcommands. Each file reads its arguments, calls the library and prints.
 
+#[macro_use]
+mod say;
+
 mod apply;
 mod blend;
 mod clips;
@@ -68,4 +71,9 @@ pub fn run(cli: Cli) -> miette::Result<()> {
         Command::Export(args) => export::run(&args),
         Command::Completions(args) => completions::run(&args),
     }
+}
+
+/// Prints why a command failed.
+pub fn complain(report: &miette::Report) {
+    eprintln!("{report:?}");
 }

@@ -55,9 +55,6 @@ struct Summary {
 /// Runs the command.
 pub fn run(args: &Args) -> miette::Result<()> {
     outputs(&[&args.out])?;
-    if !args.amount.is_finite() {
-        return Err(miette::miette!("--amount {}: expected a finite number, for example 1.5", args.amount));
-    }
     let bar = spinner();
     bar.set_message("modulating");
     let body = Body::read(&args.pack)?;

@@ -65,6 +65,12 @@ pub enum TrainError {
         /// Its value.
         found: f64,
     },
+    /// Not a share.
+    #[error("the density is {found}: expected a share from 0 to 1")]
+    Density {
+        /// Its value.
+        found: f64,
+    },
     /// A clip in which nothing moves has no components.
     #[error("the {which} clip does not move: choose one with motion in it")]
     Still {
@@ -208,9 +214,11 @@ fn check(options: &TrainOptions) -> Result<(), TrainError> {
         ("the bone weight", bones),
         ("the smoothness weight", smooth),
         ("the sparsity", options.sparsity.penalty),
-        ("the density", options.sparsity.density.unwrap_or(1.0)),
         ("the posture", options.posture),
     ];
+    if let Some(found) = options.sparsity.density.filter(|density| !(0.0..=1.0).contains(density)) {
+        return Err(TrainError::Density { found });
+    }
     match settings.into_iter().find(|(_, value)| !(value.is_finite() && *value >= 0.0)) {
         Some((name, found)) => Err(TrainError::Setting { name, found }),
         None => Ok(()),

@@ -6,7 +6,7 @@
 //! | `dataset` | one row a frame: features and pose, computed by the device's code |
 //! | `network` | small multilayer perceptrons: forward, gradient, Adam |
 //! | `linear` | the baseline: ridge regression from features to pose |
-//! | [`train`](train()) | autoencoder, feature network, stacking, fine-tuning |
+//! | [`train`](train()), `stages` | autoencoder, feature network, stacking, fine-tuning; what a checkpoint keeps of them |
 //! | `model` | a trained model, and its pack |
 //! | `play` | decouple, modulate, mix and blend clips |
 //! | `evaluate` | geodesic errors and what is left as expression, clip by clip |
@@ -20,6 +20,7 @@ mod model;
 pub mod network;
 mod play;
 mod propose;
+mod stages;
 mod train;
 
 pub use body::{BodyError, body, measured};
@@ -29,4 +30,4 @@ pub use linear::Linear;
 pub use model::MechanicsModel;
 pub use play::{HostMechanics, Overlap, blend, decouple, mix, modulate};
 pub use propose::{Proposal, propose};
-pub use train::{Figures, NamedClip, Progress, Split, TrainError, TrainOptions, Trained, train};
+pub use train::{Figures, NamedClip, Progress, Split, TrainError, TrainOptions, Trained, train, train_kept};

@@ -5,6 +5,7 @@ use faer::{Accum, MatMut, MatRef, Par};
 use rand::RngExt;
 use rand::rngs::ChaCha8Rng;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use crate::vector::vectorised;
 
@@ -13,7 +14,7 @@ use crate::vector::vectorised;
 const PART: usize = 128;
 
 /// `y = W x + b`, then tanh or nothing.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Layer {
     /// Inputs.
     pub inputs: usize,
@@ -54,7 +55,7 @@ impl Layer {
 }
 
 /// Layers one after the other.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Network {
     /// The layers, first to last.
     pub layers: Vec<Layer>,
@@ -105,14 +106,14 @@ impl Network {
     pub fn gradient(&self, batch: Batch) -> (f64, Network) {
         let mut parts = Vec::new();
         let samples = batch.input.len() / self.inputs().max(1);
-        let rows: Vec<usize> = (0..samples).collect();
+        let rows: Vec<u32> = (0..samples as u32).collect();
         self.fill(&mut parts, batch, &rows, &mut |_| ());
         let loss = self.sum(&mut parts, samples);
         (loss, parts.swap_remove(0).gradient)
     }
 
     /// Puts the chosen rows of the data into as many parts as they need; `corrupt` may change the inputs.
-    fn fill(&self, parts: &mut Vec<Part>, data: Batch, rows: &[usize], corrupt: &mut dyn FnMut(&mut [f32])) {
+    fn fill(&self, parts: &mut Vec<Part>, data: Batch, rows: &[u32], corrupt: &mut dyn FnMut(&mut [f32])) {
         let (inputs, outputs) = (self.inputs(), self.outputs());
         let count = rows.len().div_ceil(PART).max(1);
         while parts.len() < count {
@@ -120,7 +121,7 @@ impl Network {
         }
         parts.iter_mut().for_each(|part| part.clear());
         for (part, rows) in parts.iter_mut().zip(rows.chunks(PART)) {
-            for row in rows {
+            for row in rows.iter().map(|row| *row as usize) {
                 part.input.extend_from_slice(&data.input[row * inputs..][..inputs]);
                 part.target.extend_from_slice(&data.target[row * outputs..][..outputs]);
             }
@@ -247,37 +248,112 @@ pub fn fit(
     random: &mut ChaCha8Rng,
     progress: &dyn Fn(usize, f64),
 ) -> f64 {
-    let (inputs, outputs) = (network.inputs().max(1), network.outputs().max(1));
-    let samples = data.input.len() / inputs;
-    let mut order: Vec<usize> = (0..samples).collect();
-    let mut adam = Adam::new(network);
-    let mut parts = Vec::new();
-    let mut error = f64::NAN;
-    let steps = (how.epochs * samples.div_ceil(how.batch.max(1))).max(1) as f32;
-    let width = how.noise * 3f32.sqrt();
-    for epoch in 0..how.epochs {
+    let mut descent = Descent::new(std::mem::take(network), data, twin(random));
+    descent.run(data, how, &mut |descent| progress(descent.errors.len(), descent.error()));
+    let error = descent.error();
+    (*network, *random) = (descent.network, descent.random);
+    error
+}
+
+/// A fit between two epochs: all that the next one depends on, so that it can be kept and gone on with.
+#[derive(Serialize, Deserialize)]
+pub struct Descent {
+    /// The network so far.
+    pub network: Network,
+    /// Source of order and noise.
+    #[serde(with = "generator")]
+    pub random: ChaCha8Rng,
+    /// Mean squared error over each epoch so far.
+    pub errors: Vec<f64>,
+    adam: Adam,
+    /// The samples as last shuffled: the next epoch shuffles on from there.
+    order: Vec<u32>,
+}
+
+impl Descent {
+    /// Before the first epoch.
+    pub fn new(network: Network, data: Batch, random: ChaCha8Rng) -> Self {
+        let samples = (data.input.len() / network.inputs().max(1)) as u32;
+        Self { adam: Adam::new(&network), network, random, errors: Vec::new(), order: (0..samples).collect() }
+    }
+
+    /// Whether `self` can be a later state of `start`: as many samples, the same layers, no more epochs than are wanted.
+    pub fn goes_on_from(&self, start: &Self, how: &Fit) -> bool {
+        let shape = |network: &Network| -> Vec<(usize, usize, bool, usize, usize)> {
+            let layers = network.layers.iter();
+            layers.map(|l| (l.inputs, l.outputs, l.tanh, l.weights.len(), l.bias.len())).collect()
+        };
+        let networks = [&self.network, &self.adam.first, &self.adam.second];
+        let samples = start.order.len() as u32;
+        networks.into_iter().all(|network| shape(network) == shape(&start.network))
+            && self.order.len() == start.order.len()
+            && self.order.iter().all(|row| *row < samples)
+            && self.errors.len() <= how.epochs
+    }
+
+    /// Error over the last epoch.
+    pub fn error(&self) -> f64 {
+        self.errors.last().copied().unwrap_or(f64::NAN)
+    }
+
+    /// Runs the epochs that are left; `after` hears of each.
+    pub fn run(&mut self, data: Batch, how: &Fit, after: &mut dyn FnMut(&Self)) {
+        let mut parts = Vec::new();
+        while self.errors.len() < how.epochs {
+            self.epoch(data, how, &mut parts);
+            after(self);
+        }
+    }
+
+    fn epoch(&mut self, data: Batch, how: &Fit, parts: &mut Vec<Part>) {
+        let Self { network, random, errors, adam, order } = self;
+        let outputs = network.outputs().max(1);
+        let samples = order.len();
+        let steps = (how.epochs * samples.div_ceil(how.batch.max(1))).max(1) as f32;
+        let width = how.noise * 3f32.sqrt();
         for last in (1..samples).rev() {
             order.swap(last, random.random_range(0..=last));
         }
         let mut sum = 0.0;
         for chosen in order.chunks(how.batch.max(1)) {
-            network.fill(&mut parts, data, chosen, &mut |input| {
+            network.fill(parts, data, chosen, &mut |input| {
                 if width > 0.0 {
                     input.iter_mut().for_each(|x| *x += random.random_range(-width..width));
                 }
             });
-            sum += network.sum(&mut parts, chosen.len());
+            sum += network.sum(parts, chosen.len());
             let rate = how.rate * 0.5 * (1.0 + (std::f32::consts::PI * adam.step as f32 / steps).cos());
             let scale = 1.0 / (chosen.len() * outputs) as f32;
             adam.descend(network, &parts[0].gradient, scale, rate, how.decay);
         }
-        error = sum / (samples * outputs) as f64;
-        progress(epoch + 1, error);
+        errors.push(sum / (samples * outputs) as f64);
     }
-    error
+}
+
+/// A generator that goes on as `random` will; the type has no `Clone`.
+pub(super) fn twin(random: &ChaCha8Rng) -> ChaCha8Rng {
+    ChaCha8Rng::deserialize_state(&random.serialize_state())
+}
+
+/// A generator kept as its seed and its place.
+mod generator {
+    use rand::rngs::ChaCha8Rng;
+    use serde::de::Error;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub fn serialize<S: Serializer>(random: &ChaCha8Rng, serializer: S) -> Result<S::Ok, S::Error> {
+        random.serialize_state().to_vec().serialize(serializer)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<ChaCha8Rng, D::Error> {
+        let state = Vec::<u8>::deserialize(deserializer)?;
+        let state = state.try_into().map_err(|_| D::Error::custom("not the state of a generator"))?;
+        Ok(ChaCha8Rng::deserialize_state(&state))
+    }
 }
 
 /// Adam (Kingma 2015) with decoupled weight decay.
+#[derive(Serialize, Deserialize)]
 struct Adam {
     first: Network,
     second: Network,

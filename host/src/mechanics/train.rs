@@ -10,7 +10,9 @@ use super::body::{BodyError, body, measured};
 use super::dataset::{Rows, signs};
 use super::linear::Linear;
 use super::model::MechanicsModel;
-use super::network::{Batch, Fit, Layer, Network, fit};
+use super::network::{Layer, Network};
+use super::stages::{Data, Networks, fit_all};
+use crate::checkpoint::Keep;
 use crate::clip::Clip;
 use crate::rig::Rig;
 
@@ -48,13 +50,6 @@ impl Default for TrainOptions {
     }
 }
 
-/// Deviation of the noise on the autoencoder's inputs, by the poses' own.
-const POSE_NOISE: f32 = 0.1;
-/// Deviation of the noise on the features, by their own.
-const FEATURE_NOISE: f32 = 0.15;
-/// Samples of a step.
-const BATCH: usize = 256;
-
 /// A clip on the rig.
 #[derive(Clone, Debug)]
 pub struct NamedClip {
@@ -88,6 +83,9 @@ pub enum TrainError {
     /// The device refuses the body.
     #[error("the body cannot be used: {0}")]
     Refused(#[from] LoadError),
+    /// What was kept is of another training.
+    #[error("the checkpoint does not fit this training: remove it, or leave out --resume")]
+    Checkpoint,
     /// The features say nothing.
     #[error("the clips do not determine a model: they have too few frames, or nothing moves")]
     Undetermined,
@@ -155,6 +153,18 @@ pub fn train(
     options: &TrainOptions,
     progress: Progress,
 ) -> Result<Trained, TrainError> {
+    train_kept(rig, clips, name, options, progress, &mut ())
+}
+
+/// The same, keeping what it has reached in `keep` and going on from what an earlier run has kept there.
+pub fn train_kept(
+    rig: &Rig,
+    clips: &[NamedClip],
+    name: &str,
+    options: &TrainOptions,
+    progress: Progress,
+    keep: &mut dyn Keep,
+) -> Result<Trained, TrainError> {
     let mut random = ChaCha8Rng::seed_from_u64(options.seed);
     let held = hold_back(clips, options, &mut random);
     let trained_on: Vec<bool> = held.iter().map(|clip| clip.contains(&false)).collect();
@@ -187,12 +197,13 @@ pub fn train(
     let scale = Scale::of(&pool.poses, signs.len());
     let features = Standard::of(&mechanics.features, FEATURES);
     let linear = Linear::fit(&features.apply(&mechanics.features), &mechanics.poses).ok_or(TrainError::Undetermined)?;
-    let network = Stages { options, scale: &scale, progress }.run(
-        &scale.normalised(&pool.poses),
-        &features.apply(&mechanics.features),
-        &scale.normalised(&mechanics.poses),
-        &mut random,
-    );
+    let data = Data {
+        width: signs.len(),
+        pool: &scale.normalised(&pool.poses),
+        features: &features.apply(&mechanics.features),
+        poses: &scale.normalised(&mechanics.poses),
+    };
+    let network = fit_all(&data, options, random, progress, keep)?;
     let mean_pose = column_means(&mechanics.poses, signs.len()).iter().map(|x| *x as f32).collect();
     let judge = Judge { network: &network, scale: &scale, features: &features, linear: &linear, mean_pose: &mean_pose };
     let held_back = (options.hold_out > 0.0).then(|| judge.figures(&pick(false, true), &pick(true, true)));
@@ -243,49 +254,6 @@ fn hold_back(clips: &[NamedClip], options: &TrainOptions, random: &mut ChaCha8Rn
         }
     }
     held
-}
-
-/// The fitted networks, in normalised units.
-struct Networks {
-    autoencoder: Network,
-    features: Network,
-    stacked_raw: Network,
-    stacked: Network,
-}
-
-struct Stages<'a> {
-    options: &'a TrainOptions,
-    scale: &'a Scale,
-    progress: Progress<'a>,
-}
-
-impl Stages<'_> {
-    fn run(&self, pool: &[f32], features: &[f32], poses: &[f32], random: &mut ChaCha8Rng) -> Networks {
-        let (width, code, hidden) = (self.scale.mean.len(), self.options.code, self.options.hidden);
-        let how = Fit { epochs: self.options.epochs, batch: BATCH, rate: 2e-3, noise: POSE_NOISE, decay: 0.0 };
-        let mut autoencoder = Network {
-            layers: vec![Layer::random(width, code, true, random), Layer::random(code, width, false, random)],
-        };
-        let tell = |stage, epochs| {
-            let progress = self.progress;
-            move |epoch, error| progress(stage, epoch, epochs, error)
-        };
-        fit(&mut autoencoder, Batch { input: pool, target: pool }, &how, random, &tell("autoencoder", how.epochs));
-        let encoder = Network { layers: autoencoder.layers[..1].to_vec() };
-        let codes = encoder.apply(poses);
-        let mut network = Network {
-            layers: vec![Layer::random(FEATURES, hidden, true, random), Layer::random(hidden, code, true, random)],
-        };
-        let how = Fit { epochs: self.options.epochs, noise: FEATURE_NOISE, decay: 1e-3, ..how };
-        let data = Batch { input: features, target: &codes };
-        fit(&mut network, data, &how, random, &tell("feature network", how.epochs));
-        let stacked_raw = Network { layers: network.layers.iter().chain(&autoencoder.layers[1..]).cloned().collect() };
-        let mut stacked = stacked_raw.clone();
-        let how = Fit { rate: 1e-3, ..how };
-        let data = Batch { input: features, target: poses };
-        fit(&mut stacked, data, &how, random, &tell("fine-tuning", how.epochs));
-        Networks { autoencoder, features: network, stacked_raw, stacked }
-    }
 }
 
 /// Poses less their mean, all by one deviation: squared errors keep their proportions.

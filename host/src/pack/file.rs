@@ -18,29 +18,29 @@ pub struct PackFile {
 #[derive(Debug, thiserror::Error)]
 pub enum ReadPackError {
     /// The file cannot be read.
-    #[error("cannot read the pack {}: {source}", path.display())]
+    #[error("cannot read the pack {}: {error}", path.display())]
     Io {
         /// The file.
         path: PathBuf,
         /// The cause.
-        source: std::io::Error,
+        error: std::io::Error,
     },
     /// The file is not a usable pack.
-    #[error("cannot use the pack {}: {source}", path.display())]
+    #[error("cannot use the pack {}: {error}", path.display())]
     Load {
         /// The file.
         path: PathBuf,
         /// The cause.
-        source: LoadError,
+        error: LoadError,
     },
 }
 
 impl PackFile {
     /// Reads and checks a pack.
     pub fn read(path: &Path) -> Result<Self, ReadPackError> {
-        let bytes = std::fs::read(path).map_err(|source| ReadPackError::Io { path: path.to_owned(), source })?;
+        let bytes = std::fs::read(path).map_err(|error| ReadPackError::Io { path: path.to_owned(), error })?;
         let file = Self::from_bytes(&bytes);
-        file.pack().map_err(|source| ReadPackError::Load { path: path.to_owned(), source })?;
+        file.pack().map_err(|error| ReadPackError::Load { path: path.to_owned(), error })?;
         Ok(file)
     }
 

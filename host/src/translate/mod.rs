@@ -33,6 +33,6 @@ pub use dynamics::{Dynamics, Poles};
 pub use evaluate::{Errors, EvaluateError, NamedPair, PairReport, Report, evaluate};
 pub use model::{BankModel, TimingModel, TranslatorModel};
 pub use moments::Base;
-pub use play::{HostTranslator, Settings, Timing, play};
+pub use play::{HostTranslator, Settings, TIMING_STRENGTH, Timing, play};
 pub use strength::plausible;
 pub use train::{DEFAULT_ORDER, FormChoice, Stage, TrainError, TrainOptions, TrainPair, Trained, partners, train};

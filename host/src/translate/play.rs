@@ -13,6 +13,9 @@ const MAX_STATES: usize = 16_384;
 /// The device's translator at the host's capacity.
 pub type HostTranslator<'a> = Translator<'a, MAX_JOINTS, MAX_STATES>;
 
+/// Strengths up to which the learned timing is carried on, either way: beyond, a clip could last for ever.
+pub const TIMING_STRENGTH: f32 = 4.0;
+
 /// Whether the style may change the clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Timing {
@@ -46,6 +49,7 @@ pub fn play(pack: &Pack, source: &[Pose<MAX_JOINTS>], settings: &Settings) -> Re
     let mut styled = Vec::with_capacity(source.len());
     let mut clock = Vec::with_capacity(source.len());
     let mut now = 0.0;
+    let strength = settings.controls.strength.clamp(-TIMING_STRENGTH, TIMING_STRENGTH);
     if let Some(first) = source.first() {
         translator.start(&mut state, first);
     }
@@ -54,8 +58,8 @@ pub fn play(pack: &Pack, source: &[Pose<MAX_JOINTS>], settings: &Settings) -> Re
         let timing = translator.step(&mut state, pose, &mut out);
         styled.push(out);
         clock.push(now);
-        // Strength acts on the clock as on the pose: 0 keeps it.
-        now += f64::from(timing.duration).powf(f64::from(settings.controls.strength));
+        // Strength acts on the clock as on the pose (up to `TIMING_STRENGTH`): 0 keeps it.
+        now += f64::from(timing.duration).powf(f64::from(strength));
     }
     Ok(match settings.timing {
         Timing::Keep => styled,

@@ -90,7 +90,9 @@ pub enum BvhFault {
     FrameCount { line: usize, found: String },
     #[error("line {line}: expected 'Frame Time: seconds', found '{found}'")]
     MissingFrameTime { line: usize, found: String },
-    #[error("line {line}: 'Frame Time: {found}': expected seconds between frames, a number above 0 (like 0.008333)")]
+    #[error(
+        "line {line}: 'Frame Time: {found}': expected seconds between frames, a number from 0.00001 to 10 (like 0.008333)"
+    )]
     FrameTime { line: usize, found: String },
     #[error("line {line}: frame {frame} has {found} values, expected {expected} (one per channel). {}",
             if *last { "It is the last line: the file may be cut off; export or download it again" }

@@ -4,6 +4,10 @@ use super::cursor::Cursor;
 use super::fault::BvhFault;
 use super::hierarchy::RawJoint;
 
+/// Seconds between frames that are taken for a recording: what lies outside is a mistake, and would make clips of years.
+const SHORTEST: f64 = 1e-5;
+const LONGEST: f64 = 10.0;
+
 /// The motion as the file has it: `values` is row-major `[frames x channels]`, file units and degrees.
 pub(super) struct Motion {
     pub frame_time: f64,
@@ -79,7 +83,7 @@ fn frame_time(cursor: &mut Cursor<'_>) -> Result<f64, BvhFault> {
         return Err(BvhFault::MissingFrameTime { line, found: short(text) });
     };
     match value.parse::<f64>() {
-        Ok(t) if t.is_finite() && t > 0.0 => Ok(t),
+        Ok(t) if (SHORTEST..=LONGEST).contains(&t) => Ok(t),
         _ => Err(BvhFault::FrameTime { line, found: short(value) }),
     }
 }

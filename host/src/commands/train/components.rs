@@ -163,7 +163,7 @@ impl Args {
             },
             sparsity: Sparsity {
                 penalty: self.sparsity,
-                density: (self.density < 1.0).then_some(self.density),
+                density: (self.density != 1.0).then_some(self.density),
                 ..Sparsity::default()
             },
             weights: Weights {

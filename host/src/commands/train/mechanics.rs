@@ -5,13 +5,14 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::ValueEnum;
-use kinesic_host::mechanics::{Figures, NamedClip, Split, TrainOptions, Trained, propose, train};
-use kinesic_host::pack::{Baselines, Metric, PackFile, Provenance};
+use kinesic_host::mechanics::{Figures, NamedClip, Split, TrainOptions, Trained, propose, train_kept};
+use kinesic_host::pack::{Baselines, InputFile, Metric, PackFile, Provenance};
 use kinesic_host::prepare::{Source, common_rate, fingerprint};
 use miette::{IntoDiagnostic, WrapErr, miette};
 use serde::Serialize;
 
 use super::report::{ReportArgs, mechanics::page};
+use super::resume::ResumeArgs;
 use crate::commands::clips::{Reading, clip_paths};
 use crate::commands::output::{check_output, command_line, print_json, spinner, write_whole};
 
@@ -27,7 +28,8 @@ Examples:
   kinesic train mechanics --clips plain-walks/ --pool all-clips/ --out mechanics.kin
   kinesic train mechanics --clips manifest.tsv:label=body-mechanics,skeleton=cmu31 --pool manifest.tsv:skeleton=cmu31 \\
       --hidden 50 --out mechanics.kin
-  kinesic train mechanics --pool all-clips/ --propose --out mechanics.kin")]
+  kinesic train mechanics --pool all-clips/ --propose --out mechanics.kin
+  kinesic train mechanics --clips plain-walks/ --out mechanics.kin --resume     # goes on after a kill")]
 pub struct Args {
     /// Clips that show body mechanics without expression: files, folders, tables
     #[arg(long, value_name = "CLIPS", num_args = 1.., required_unless_present = "propose")]
@@ -70,6 +72,8 @@ pub struct Args {
     reading: Reading,
     #[command(flatten)]
     report: ReportArgs,
+    #[command(flatten)]
+    resume: ResumeArgs,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -133,13 +137,17 @@ pub fn run(args: &Args) -> miette::Result<()> {
             eprintln!("{stage}: epoch {epoch} of {epochs}, error {error:.5}");
         }
     };
-    let trained = train(&rig, &clips, &name, &options, &progress).into_diagnostic()?;
-    let inputs = paths
+    let prints: Vec<InputFile> = paths
         .iter()
-        .zip(&trained.trained_on)
-        .filter(|(_, trained)| **trained)
-        .map(|(path, _)| fingerprint(path).into_diagnostic().wrap_err_with(|| path.display().to_string()))
+        .map(|path| fingerprint(path).into_diagnostic().wrap_err_with(|| path.display().to_string()))
         .collect::<Result<_, _>>()?;
+    // The same options, the same clips in the same order, read in the same way: the same training.
+    let options_and_rate = format!("mechanics {options:?} {fps}");
+    let clips_by_hash = format!("{prints:?} {mechanics:?}");
+    let mut checkpoint =
+        args.resume.checkpoint(&args.out, &[options_and_rate, clips_by_hash, args.reading.deciding()?])?;
+    let trained = train_kept(&rig, &clips, &name, &options, &progress, &mut checkpoint).into_diagnostic()?;
+    let inputs = prints.into_iter().zip(&trained.trained_on).filter(|(_, trained)| **trained).map(|(i, _)| i).collect();
     let provenance = Provenance {
         tool: format!("kinesic {}", env!("CARGO_PKG_VERSION")),
         command: command_line(),
@@ -155,6 +163,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     // A plain clip that was not trained on shows more than one that was.
     let shown = (0..clips.len()).filter(|i| clips[*i].mechanics).min_by_key(|i| trained.trained_on[*i]).unwrap_or(0);
     args.report.write(&args.out, &file, page(&trained, &history.take(), &clips[shown], &rig, &file)?)?;
+    checkpoint.finish();
     bar.finish_and_clear();
     let summary = Summary {
         pack: args.out.display().to_string(),

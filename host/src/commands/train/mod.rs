@@ -3,6 +3,7 @@
 mod components;
 mod mechanics;
 mod report;
+mod resume;
 mod translate;
 
 use clap::Subcommand;
