@@ -13,6 +13,7 @@ usage: ./ci.sh [COMMAND]
   firmware  images for every target, run in the emulator, against the budgets
 
   header    makes c/include/kinesic.h from c/src
+  bench-peers  training jobs beside the Python packages used today (installed into target/peers): docs/training-speed.md
 EOF
 }
 
@@ -66,6 +67,17 @@ header() {
     KINESIC_HEADER=write cargo test --release --locked -p kinesic-firmware-sim --test c the_header_is_that_of_the_crate
 }
 
+bench_peers() {
+    local work=target/peers
+    need python3 "apt-get install python3 python3-venv"
+    [ -x "$work/bin/python" ] || python3 -m venv "$work"
+    "$work/bin/pip" install --quiet --requirement benches/peers/requirements.txt
+    cargo build --release --locked -p kinesic-benches --bins
+    cargo build --release --locked -p kinesic-host --example components_bench
+    "$work/bin/python" benches/peers/host.py target/release/host-jobs "$work/jobs"
+    "$work/bin/python" benches/peers/components.py target/release/examples/components_bench "$work/jobs"
+}
+
 need cargo "Install Rust: https://rustup.rs"
 need cc "Install a C linker: apt-get install gcc"
 case "${1:-test}" in
@@ -76,6 +88,7 @@ test)
     firmware
     ;;
 lint | unit | firmware | header) "$1" ;;
+bench-peers) bench_peers ;;
 -h | --help) usage ;;
 *)
     usage >&2

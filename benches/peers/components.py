@@ -16,6 +16,10 @@ import warnings
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[name] = "1"
 
+# Set on some machines for old OpenBLAS builds; they slow the peers down.
+for name in ("OPENBLAS_CORETYPE", "OPENBLAS_L2_SIZE"):
+    os.environ.pop(name, None)
+
 import numpy as np  # noqa: E402
 
 warnings.filterwarnings("ignore")

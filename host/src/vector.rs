@@ -10,3 +10,19 @@ pub use pulp::NullaryFnOnce as Work;
 pub fn vectorised<W: Work>(work: W) -> W::Output {
     pulp::Arch::new().dispatch(work)
 }
+
+/// `a' b` over the shorter length, summed in eight lanes: the same bits with vectors of any width.
+#[inline]
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let (wide_a, rest_a) = a.as_chunks::<8>();
+    let (wide_b, rest_b) = b.as_chunks::<8>();
+    let mut lanes = [0.0; 8];
+    for (a, b) in wide_a.iter().zip(wide_b) {
+        for ((lane, a), b) in lanes.iter_mut().zip(a).zip(b) {
+            *lane += a * b;
+        }
+    }
+    let rest: f64 = rest_a.iter().zip(rest_b).map(|(a, b)| a * b).sum();
+    let [a, b, c, d, e, f, g, h] = lanes;
+    ((a + b) + (c + d)) + ((e + f) + (g + h)) + rest
+}

@@ -4,7 +4,7 @@ use faer::{Mat, MatRef};
 use nalgebra::{Matrix3, SymmetricEigen};
 
 use super::factor::{Factors, column_mut};
-use super::small::dot;
+use crate::vector::dot;
 
 /// `count` components, from the three main directions of every joint, joined pair by pair where it costs least.
 ///

@@ -4,7 +4,8 @@ use faer::MatRef;
 
 use super::factor::{Factors, column, column_mut, product};
 use super::refit::{Fit, Scatter};
-use super::small::{Cholesky, dot};
+use super::small::Cholesky;
+use crate::vector::dot;
 
 /// Groups that leave at once, as a share of those that are left.
 const SHARE: f64 = 0.08;

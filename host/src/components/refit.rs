@@ -142,7 +142,7 @@ impl<'a> Fit<'a> {
 }
 
 fn inner_product(a: &Mat<f64>, b: &Mat<f64>) -> f64 {
-    (0..a.ncols()).map(|k| super::small::dot(column(a, k), column(b, k))).sum()
+    (0..a.ncols()).map(|k| crate::vector::dot(column(a, k), column(b, k))).sum()
 }
 
 /// `gram^-1 right` with a trace of damping.

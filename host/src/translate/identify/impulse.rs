@@ -5,6 +5,8 @@ use std::ops::Range;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 
+use crate::vector::{dot, vectorised};
+
 /// A finite impulse response: `y[t] = sum over k of g[k] u[t - k] + constant`.
 #[derive(Clone, Debug)]
 pub struct ImpulseResponse {
@@ -34,18 +36,17 @@ pub fn impulse_response(
         return None;
     }
     let size = m * taps;
-    let regressor = |u: &Mat<f64>, t: usize, i: usize| u[(t.saturating_sub(i % taps), i / taps)];
     let mut gram = Mat::<f64>::zeros(size, size);
     let mut cross = Mat::<f64>::zeros(size, p);
     let mut mean_in = vec![0.0; size];
     let mut mean_out = vec![0.0; p];
     let mut power = vec![0.0; p];
     for ((u, y), range) in inputs.iter().zip(outputs).zip(covered) {
-        let phi = Mat::from_fn(range.len(), size, |t, i| regressor(u, range.start + t, i));
-        gram += phi.transpose() * &phi;
-        cross += phi.transpose() * y;
+        let past = Past::new(u, taps, range.clone());
+        vectorised(|| past.add_gram(&mut gram));
+        vectorised(|| past.add_cross(y, &mut cross));
         for (i, mean) in mean_in.iter_mut().enumerate() {
-            *mean += phi.col(i).iter().sum::<f64>() / frames as f64;
+            *mean += past.delayed(i).iter().sum::<f64>() / frames as f64;
         }
         for (o, (mean, power)) in mean_out.iter_mut().zip(&mut power).enumerate() {
             *mean += y.col(o).iter().sum::<f64>() / frames as f64;
@@ -89,6 +90,72 @@ pub fn impulse_response(
     Some(ImpulseResponse { taps, constant })
 }
 
+/// The inputs of one sequence as regressors: number `i` is input `i / taps`, delayed by `i % taps` frames.
+struct Past {
+    /// Each input with its first value repeated before it.
+    columns: Vec<Vec<f64>>,
+    taps: usize,
+    covered: Range<usize>,
+}
+
+impl Past {
+    fn new(u: &Mat<f64>, taps: usize, covered: Range<usize>) -> Self {
+        let value = |input: usize, at: usize| u[(at.saturating_sub(taps), input)];
+        let column = |input: usize| (0..taps + covered.end).map(|at| value(input, at)).collect();
+        Self { columns: (0..u.ncols()).map(column).collect(), taps, covered }
+    }
+
+    /// Regressor `i` over the covered frames.
+    #[inline]
+    fn delayed(&self, i: usize) -> &[f64] {
+        let from = self.taps + self.covered.start - i % self.taps;
+        &self.columns[i / self.taps][from..from + self.covered.len()]
+    }
+
+    /// Value of an input in the frame before regressor `i`'s first, and its last: what a further delay takes in, and leaves out.
+    fn ends(&self, i: usize) -> [f64; 2] {
+        let column = &self.columns[i / self.taps];
+        let first = self.taps + self.covered.start - i % self.taps;
+        [column[first - 1], column[first + self.covered.len() - 1]]
+    }
+
+    /// Adds the products of all regressors with each other.
+    ///
+    /// Delaying both by one frame moves the window by one: only products with an undelayed input are summed over the frames,
+    /// `inputs^2 (2 taps - 1)` sums instead of `(inputs taps)^2`.
+    #[inline(always)]
+    fn add_gram(&self, gram: &mut Mat<f64>) {
+        let size = self.columns.len() * self.taps;
+        if self.covered.is_empty() {
+            return;
+        }
+        let mut products = Mat::<f64>::zeros(size, size);
+        for j in 0..size {
+            for i in 0..=j {
+                let product = if i % self.taps == 0 || j % self.taps == 0 {
+                    dot(self.delayed(i), self.delayed(j))
+                } else {
+                    let ([a, b], [c, d]) = (self.ends(i - 1), self.ends(j - 1));
+                    products[(i - 1, j - 1)] + a * c - b * d
+                };
+                (products[(i, j)], products[(j, i)]) = (product, product);
+            }
+        }
+        *gram += products;
+    }
+
+    /// Adds the products of all regressors with the outputs.
+    #[inline(always)]
+    fn add_cross(&self, y: &Mat<f64>, cross: &mut Mat<f64>) {
+        for (o, y) in y.col_iter().enumerate() {
+            let y: Vec<f64> = y.iter().copied().collect();
+            for i in 0..cross.nrows() {
+                cross[(i, o)] += dot(self.delayed(i), &y);
+            }
+        }
+    }
+}
+
 /// Inverse of `K[i][j] = lambda^max(i, j)` and the logarithm of the determinant of `K`.
 ///
 /// Under this prior the differences of neighbouring taps are independent, so the inverse is tridiagonal.
@@ -108,4 +175,21 @@ fn tc_precision(taps: usize, lambda: f64) -> (Mat<f64>, f64) {
         }
     }
     (precision, log_det)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_products_are_those_of_the_regressors() {
+        let u = Mat::from_fn(50, 2, |t, i| ((t * (3 + i)) as f64 * 0.37).sin() + 0.1 * i as f64);
+        let past = Past::new(&u, 7, 2..41);
+        let regressor = |t: usize, i: usize| u[(t.saturating_sub(i % 7), i / 7)];
+        let expected = Mat::from_fn(14, 14, |i, j| (2..41).map(|t| regressor(t, i) * regressor(t, j)).sum::<f64>());
+        let mut gram = Mat::zeros(14, 14);
+        past.add_gram(&mut gram);
+        assert!((gram - expected).norm_max() < 1e-12);
+        (0..14).for_each(|i| assert!((2..41).all(|t| past.delayed(i)[t - 2] == regressor(t, i))));
+    }
 }
