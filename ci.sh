@@ -14,6 +14,9 @@ usage: ./ci.sh [COMMAND]
 
   header    makes c/include/kinesic.h from c/src
   bench-peers  training jobs beside the Python packages used today (installed into target/peers): docs/training-speed.md
+  fuzz [SECONDS]
+            every fuzz target for so long (default 60), from the corpus in fuzz/; what it finds is left in fuzz/artifacts
+  deny      licences, sources and known vulnerabilities of all dependencies, by cargo-deny and deny.toml
 EOF
 }
 
@@ -26,7 +29,7 @@ need() {
 lint() {
     cargo fmt --all --check
     # Crates for microcontrollers are workspaces of their own.
-    for crate in c docs/board firmware-sim/image firmware-sim/plugin tests/no-std-link; do
+    for crate in c docs/board firmware-sim/image firmware-sim/plugin fuzz tests/no-std-link; do
         cargo fmt --manifest-path "$crate/Cargo.toml" --check
     done
     cargo clippy --release --workspace --all-targets --locked -- -D warnings
@@ -78,6 +81,50 @@ bench_peers() {
     "$work/bin/python" benches/peers/components.py target/release/examples/components_bench "$work/jobs"
 }
 
+# Coverage by the compiler's own pass, on the stable toolchain; without a sanitizer, since nothing here is unsafe code of ours.
+# With cargo-fuzz and a nightly toolchain: cargo fuzz run pack
+fuzz() {
+    local seconds=$1 host target log found=0
+    need c++ "Install a C++ compiler, which libFuzzer is built by: apt-get install g++"
+    host=$(rustc -vV | sed -n 's/^host: //p')
+    # A target of its own keeps these flags from build scripts and macros.
+    RUSTFLAGS="--cfg fuzzing -Ccodegen-units=1 -Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
+-Cllvm-args=-sanitizer-coverage-inline-8bit-counters -Cllvm-args=-sanitizer-coverage-pc-table \
+-Cllvm-args=-sanitizer-coverage-trace-compares" \
+        cargo build --release --locked --manifest-path fuzz/Cargo.toml --target "$host"
+    mkdir -p fuzz/artifacts fuzz/target/corpus
+    log=$(mktemp)
+    for target in pack bvh csv map; do
+        # What is new goes to fuzz/target, so that later runs go on from there and the repository stays small.
+        mkdir -p "fuzz/target/corpus/$target" "fuzz/artifacts/$target" "fuzz/regressions/$target"
+        if "fuzz/target/$host/release/$target" -max_total_time="$seconds" -timeout=20 -rss_limit_mb=4096 -print_final_stats=1 \
+            -artifact_prefix="fuzz/artifacts/$target/" "fuzz/target/corpus/$target" "fuzz/corpus/$target" \
+            "fuzz/regressions/$target" >"$log" 2>&1; then
+            echo "$target: $(sed -n 's/^stat::number_of_executed_units: *//p' "$log") executions, nothing found"
+        else
+            found=1
+            echo "$target: FOUND, see fuzz/artifacts/$target; mend it and put the input into fuzz/regressions/$target"
+            tail -n 40 "$log"
+        fi
+    done
+    rm -f "$log"
+    return "$found"
+}
+
+deny() {
+    if ! cargo deny --version >/dev/null 2>&1; then
+        echo "ci.sh: cargo-deny is missing. Install it: cargo install --locked cargo-deny" >&2
+        echo "Licences and sources are also checked without it: cargo test --release -p kinesic-tests --test dependencies" >&2
+        exit 1
+    fi
+    local manifest
+    for manifest in Cargo.toml c/Cargo.toml docs/board/Cargo.toml firmware-sim/image/Cargo.toml fuzz/Cargo.toml; do
+        # Advisories need the database of RustSec, which is fetched from the network.
+        cargo deny --manifest-path "$manifest" check --config "$PWD/deny.toml" licenses sources bans
+    done
+    cargo deny check advisories
+}
+
 need cargo "Install Rust: https://rustup.rs"
 need cc "Install a C linker: apt-get install gcc"
 case "${1:-test}" in
@@ -87,8 +134,9 @@ test)
     unit
     firmware
     ;;
-lint | unit | firmware | header) "$1" ;;
 bench-peers) bench_peers ;;
+lint | unit | firmware | header | deny) "$1" ;;
+fuzz) fuzz "${2:-60}" ;;
 -h | --help) usage ;;
 *)
     usage >&2

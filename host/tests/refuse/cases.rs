@@ -64,6 +64,7 @@ pub const CASES: &[(&str, &str)] = &[
     ("inspect gap.csv", "line 2"),
     ("inspect years.csv", "s"),
     ("inspect short.csv", "line 4"),
+    ("inspect pause.csv", "line 4"),
     // Packs.
     ("inspect empty.kin", "0 bytes"),
     ("inspect cut.kin", "truncated"),

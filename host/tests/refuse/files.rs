@@ -125,6 +125,7 @@ pub fn make(folder: &Path) {
     text("no-time.csv", kinect(|row, column| (row == 3 && column == 0).then(|| "nan".into())));
     text("gap.csv", kinect(|_, column| (column == 9).then(String::new)));
     text("years.csv", kinect(|row, column| (column == 0).then(|| (1e12 * row as f64).to_string())));
+    text("pause.csv", kinect(|row, column| (row > 1 && column == 0).then(|| (24e6 + row as f64).to_string())));
     text("short.csv", swap(&kinect(|_, _| None), "\n66,", "\n66\n99,"));
     text("other.csv", "name,age\nAnn,4\n".into());
 

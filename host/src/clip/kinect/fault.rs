@@ -39,6 +39,11 @@ pub enum KinectFault {
              column 'Timestamp'"
     )]
     TooLong { seconds: f64 },
+    #[error(
+        "line {line}: {seconds:.0} s after the line before, at most {limit:.0} s are filled by straight lines. Cut the recording \
+             there"
+    )]
+    Pause { line: u64, seconds: f64, limit: f64 },
     #[error("joint '{joint}' is always at its parent's place, so the bone has no length. The recording holds no body")]
     NoBone { joint: &'static str },
 }

@@ -49,6 +49,10 @@ type Skeleton20 = [Vector3<f64>; 20];
 /// A pause between rows that is worth a note, s (three frames of the sensor).
 const PAUSE: f64 = 0.1;
 
+/// A pause between rows that is filled, s. The longest of the Kinder-Gator recordings is 78 ms; hours of straight lines would be no
+/// motion, and a few bytes would ask for gigabytes.
+const LONGEST_PAUSE: f64 = 10.0;
+
 /// How to read a recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KinectOptions {
@@ -102,7 +106,12 @@ pub fn parse(bytes: &[u8], options: &KinectOptions) -> Result<Recording, KinectF
     if bridged > 0 {
         notes.push(format!("Missing numbers in {bridged} row(s) were bridged by straight lines."));
     }
-    let pause = table.times.windows(2).map(|w| w[1] - w[0]).fold(0.0, f64::max);
+    let steps = || table.times.windows(2).map(|w| w[1] - w[0]);
+    if let Some((row, seconds)) = steps().enumerate().find(|(_, step)| *step > LONGEST_PAUSE) {
+        let line = table.lines.get(row + 1).copied().unwrap_or(0);
+        return Err(KinectFault::Pause { line, seconds, limit: LONGEST_PAUSE });
+    }
+    let pause = steps().fold(0.0, f64::max);
     notes.push(format!(
         "Uneven clock ({:.1} rows/s on the average, longest step {:.0} ms): resampled to {} fps by timestamp{}.",
         (table.rows.len() - 1) as f64 / duration,

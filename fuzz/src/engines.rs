@@ -1,0 +1,63 @@
+//! Every engine, 100 frames. A new engine gets a function and a line in [`step_all`].
+
+use kinesic::mechanics::{Blend, Decoupled, Modulation, Window, mix, modulate};
+use kinesic::{BodyMechanics, Components, ComponentsState, MechanicsState, Pack, Pose, Translator, TranslatorState};
+
+use super::frames::{Frames, JOINTS};
+
+/// Frames that each engine steps.
+const STEPS: usize = 100;
+
+/// Steps every engine that takes the pack.
+pub fn step_all(pack: &Pack, frames: &mut Frames) {
+    translator(pack, frames);
+    mechanics(pack, frames);
+    components(pack, frames);
+}
+
+fn translator(pack: &Pack, frames: &mut Frames) {
+    let Ok(model) = Translator::<JOINTS, 1024>::load(pack) else { return };
+    let mut state = Box::new(TranslatorState::new());
+    let mut styled = Pose::identity();
+    model.start(&mut state, &frames.pose());
+    for step in 0..STEPS {
+        if step % 10 == 0 {
+            state.controls.strength = frames.control();
+            state.controls.mask = std::array::from_fn(|_| frames.control());
+        }
+        model.step(&mut state, &frames.pose(), &mut styled);
+    }
+}
+
+fn mechanics(pack: &Pack, frames: &mut Frames) {
+    let Ok(model) = BodyMechanics::<JOINTS, 256, 120>::load(pack) else { return };
+    let mut state = Box::new(MechanicsState::new());
+    let (mut parts, mut before) = (Decoupled::identity(), Decoupled::identity());
+    let mut out = Pose::identity();
+    for step in 0..STEPS {
+        let pose = frames.pose();
+        model.step(&mut state, &pose, &mut parts);
+        let mut modulation = Modulation { amount: frames.control(), ..Modulation::default() };
+        modulation.mask = std::array::from_fn(|_| frames.control());
+        modulate(&pose, &parts, &modulation, &mut out);
+        mix(&parts, &before, &modulation, &mut out);
+        let [a, b, c, d] = [(); 4].map(|()| 50.0 * frames.control());
+        let blend = Blend { mechanics: Window { start: a, end: b }, expressive: Window { start: c, end: d } };
+        blend.step(step as f32, &before, &parts, &mut out);
+        before = parts;
+    }
+}
+
+fn components(pack: &Pack, frames: &mut Frames) {
+    let Ok(model) = Components::<JOINTS, 64>::load(pack) else { return };
+    let mut state = ComponentsState::new();
+    let mut styled = Pose::identity();
+    for step in 0..STEPS {
+        if step % 10 == 0 {
+            state.controls.strength = frames.control();
+            state.controls.mask = std::array::from_fn(|_| frames.control());
+        }
+        model.step(&mut state, &frames.pose(), &mut styled);
+        model.step_stored(&mut state, &mut styled);
+    }
+}
