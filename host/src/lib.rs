@@ -9,6 +9,7 @@ pub mod checkpoint;
 pub mod clip;
 pub mod components;
 pub mod embed;
+pub mod emotion;
 pub mod files;
 pub mod gait;
 pub mod mechanics;
