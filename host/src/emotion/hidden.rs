@@ -67,7 +67,9 @@ mod tests {
             let (value, slope) = tanh(x);
             assert!((value - f64::from(kinesic::kernel::tanh(x as f32))).abs() < 1e-5, "{x}");
             let numeric = (tanh(x + 1e-6).0 - tanh(x - 1e-6).0) / 2e-6;
-            assert!((slope - numeric).abs() < 1e-4, "{x}: {slope} {numeric}");
+            // At the end itself the formula has a corner.
+            let corner = (x.abs() - END).abs() < 1e-3;
+            assert!(corner || (slope - numeric).abs() < 1e-4, "{x}: {slope} {numeric}");
         }
     }
 }
