@@ -7,6 +7,7 @@
 //! | `cluster` | k-means over contours: how the head is turned |
 //! | `strength` | ranking functions: one for all, then one a cluster that may differ from it |
 //! | [`train()`], `model` | from a table to a pack |
+//! | `made` | faces for tests and the firmware workload |
 //! | `evaluate` | reads every face through the device's code; pair accuracy, rank correlation |
 //! | [`edit()`], `warp/` | offsets for a change of strength; moves the landmarks of a picture |
 
@@ -14,6 +15,7 @@ mod cluster;
 mod edit;
 mod evaluate;
 pub mod landmarks;
+pub mod made;
 mod model;
 mod shape;
 mod strength;
