@@ -10,6 +10,7 @@
 //! | [`translate`] | style translation by linear time-invariant state-space models | Dong 2018 after Hsu 2005 |
 //! | [`mechanics`] | what the body must do, what is expression: decouple, modulate, mix, blend | Boehs 2017 |
 //! | [`components`] | style components applied to a live pose or to a stored stream of weights | Phong 2018 |
+//! | [`face`] | strength of a facial expression -> landmarks | Chan 2019 |
 //! | [`kernel`] | the few inner loops: matrix x vector, modal recursion, activations | |
 //!
 //! Units are metres, radians, seconds and frames; right-handed, Y up; a person who faces +Z has the left hand at +X.
@@ -44,6 +45,7 @@
 compile_error!("packs are little-endian and used in place: kinesic needs a little-endian target");
 
 pub mod components;
+pub mod face;
 pub mod kernel;
 pub mod mechanics;
 pub mod model;
@@ -51,6 +53,7 @@ pub mod pose;
 pub mod translate;
 
 pub use components::{Components, ComponentsState};
+pub use face::{FaceState, FaceSynth};
 pub use mechanics::{BodyMechanics, MechanicsState};
 pub use model::{LoadError, Pack};
 pub use pose::{Pose, Skeleton};

@@ -59,6 +59,9 @@ pub fn rust_module(file: &PackFile, origin: &str) -> Result<String, LoadError> {
             ModelMeta::Components(meta) => {
                 constant("Style components", "COMPONENTS", &meta.count, "usize");
             }
+            ModelMeta::Face(meta) => {
+                constant("Hidden units of a cluster of head pose", "UNITS", &meta.hidden, "usize");
+            }
         }
     }
     let _ = write!(
@@ -89,5 +92,6 @@ fn engine(meta: &ModelMeta) -> (&'static str, &'static str) {
         ModelMeta::Translator(_) => ("Translator::<JOINTS, STATES>", "TranslatorState"),
         ModelMeta::Mechanics(_) => ("BodyMechanics::<JOINTS, UNITS, WINDOW>", "MechanicsState"),
         ModelMeta::Components(_) => ("Components::<JOINTS, COMPONENTS>", "ComponentsState"),
+        ModelMeta::Face(_) => ("FaceSynth::<UNITS>", "FaceState"),
     }
 }

@@ -9,6 +9,8 @@ pub mod checkpoint;
 pub mod clip;
 pub mod components;
 pub mod embed;
+pub mod emotion;
+pub mod face;
 pub mod files;
 pub mod gait;
 pub mod mechanics;

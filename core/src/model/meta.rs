@@ -16,6 +16,8 @@ pub enum Kind {
     Mechanics = 2,
     /// Style components.
     Components = 3,
+    /// Strength of a facial expression.
+    Face = 5,
 }
 
 impl Kind {
@@ -31,6 +33,7 @@ impl Kind {
             1 => Some(Self::Translator),
             2 => Some(Self::Mechanics),
             3 => Some(Self::Components),
+            5 => Some(Self::Face),
             _ => None,
         }
     }
@@ -74,6 +77,8 @@ pub enum ModelMeta<'a> {
     Mechanics(MechanicsMeta),
     /// Style components; their tensors are `components/...`.
     Components(#[serde(borrow)] ComponentsMeta<'a>),
+    /// Strength of a facial expression; its tensors are `face/...`.
+    Face(#[serde(borrow)] FaceMeta<'a>),
 }
 
 impl<'a> ModelMeta<'a> {
@@ -90,6 +95,11 @@ impl<'a> ModelMeta<'a> {
     /// The components' shape, if it is such a model.
     pub fn components(self) -> Option<ComponentsMeta<'a>> {
         if let Self::Components(meta) = self { Some(meta) } else { None }
+    }
+
+    /// The face model's shape, if it is one.
+    pub fn face(self) -> Option<FaceMeta<'a>> {
+        if let Self::Face(meta) = self { Some(meta) } else { None }
     }
 }
 
@@ -144,6 +154,19 @@ pub struct ComponentsMeta<'a> {
     /// Frames of the stored stream of weights; 0 if the pack holds none.
     pub frames: u32,
     /// Range of strengths in which the poses of the content clip stayed plausible.
+    pub strength: [f32; 2],
+}
+
+/// Shape of a model of the strength of a facial expression.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FaceMeta<'a> {
+    /// Name of the expression, as the training table called it.
+    pub attribute: &'a str,
+    /// Clusters of head pose, each with a model of its own.
+    pub clusters: u32,
+    /// Hidden units of a cluster's network.
+    pub hidden: u32,
+    /// Strengths that nearly all training faces lie between; targets are held inside.
     pub strength: [f32; 2],
 }
 

@@ -10,7 +10,7 @@ mod tensor;
 
 pub use error::LoadError;
 pub use meta::{
-    ComponentsMeta, Form, JointMeta, Kind, List, MechanicsMeta, Metadata, ModelMeta, TensorMeta, TensorType,
+    ComponentsMeta, FaceMeta, Form, JointMeta, Kind, List, MechanicsMeta, Metadata, ModelMeta, TensorMeta, TensorType,
     TranslatorMeta,
 };
 

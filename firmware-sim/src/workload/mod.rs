@@ -4,6 +4,7 @@
 //! its pack and input here, an entry in `budgets.toml`.
 
 mod components;
+mod face;
 mod mechanics;
 pub mod recorded;
 mod translator;
@@ -77,6 +78,7 @@ const ALL: &[(&str, Make)] = &[
     ("translator-body", translator::whole_body),
     ("mechanics", mechanics::prepare),
     ("components", components::prepare),
+    ("face", face::prepare),
 ];
 
 /// Makes pack and input of a workload and runs it on the host.

@@ -6,6 +6,7 @@ use kinesic::Pack;
 use kinesic::model::{JointMeta, MAGIC, ModelMeta};
 use kinesic_host::clip::{self, JointMap};
 use kinesic_host::components::HostComponents;
+use kinesic_host::face::HostFace;
 use kinesic_host::mechanics::HostMechanics;
 use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_host::rig::Rig;
@@ -163,6 +164,19 @@ fn model(pack: &Pack, meta: &ModelMeta, joints: usize) -> miette::Result<ModelRe
             });
             ("components", figures)
         }
+        ModelMeta::Face(meta) => {
+            let face = HostFace::load(pack).into_diagnostic()?;
+            let figures = json!({
+                "attribute": meta.attribute,
+                "clusters": meta.clusters,
+                "hidden": meta.hidden,
+                "multiply_adds_per_update_before_the_frame": face.multiply_adds(),
+                "capacity": format!("FaceSynth::<{}>", meta.hidden),
+                "state_bytes": size_of::<kinesic::FaceState>(),
+                "plausible_strength": meta.strength,
+            });
+            ("face", figures)
+        }
     };
     let serde_json::Value::Object(figures) = figures else { unreachable!("json! of braces is an object") };
     Ok(ModelReport { engine, figures })
@@ -178,7 +192,10 @@ fn pack(path: &Path, json: bool) -> miette::Result<()> {
     let file = PackFile::read(path).into_diagnostic()?;
     let pack = file.pack().into_diagnostic()?;
     let metadata = pack.metadata();
-    Rig::from_pack(&pack).into_diagnostic()?;
+    // A face has no joints.
+    if metadata.models.iter().any(|model| model.face().is_none()) {
+        Rig::from_pack(&pack).into_diagnostic()?;
+    }
     let joints: Vec<JointMeta> = metadata.joints.iter().collect();
     let report = PackReport {
         file: path.display().to_string(),

@@ -12,6 +12,7 @@ mod demo;
 mod eval;
 mod export;
 mod expression;
+mod face;
 mod inspect;
 mod mask;
 mod mix;
@@ -54,6 +55,7 @@ enum Command {
     Blend(blend::Args),
     Export(export::Args),
     Completions(completions::Args),
+    Face(face::Args),
 }
 
 /// Runs a command line.
@@ -70,6 +72,7 @@ pub fn run(cli: Cli) -> miette::Result<()> {
         Command::Blend(args) => blend::run(&args),
         Command::Export(args) => export::run(&args),
         Command::Completions(args) => completions::run(&args),
+        Command::Face(args) => face::run(&args),
     }
 }
 

@@ -1,6 +1,7 @@
 //! `kinesic eval`: one file an engine.
 
 mod components;
+mod face;
 mod mechanics;
 mod translate;
 
@@ -12,6 +13,7 @@ pub enum Engine {
     Translate(translate::Args),
     Mechanics(mechanics::Args),
     Components(components::Args),
+    Face(face::Args),
 }
 
 /// Runs the command.
@@ -20,5 +22,6 @@ pub fn run(engine: &Engine) -> miette::Result<()> {
         Engine::Translate(args) => translate::run(args),
         Engine::Mechanics(args) => mechanics::run(args),
         Engine::Components(args) => components::run(args),
+        Engine::Face(args) => face::run(args),
     }
 }

@@ -1,6 +1,7 @@
 //! `kinesic train`: one file an engine.
 
 mod components;
+mod face;
 mod mechanics;
 mod report;
 mod resume;
@@ -14,6 +15,7 @@ pub enum Engine {
     Translate(translate::Args),
     Mechanics(mechanics::Args),
     Components(components::Args),
+    Face(face::Args),
 }
 
 /// Runs the command.
@@ -22,5 +24,6 @@ pub fn run(engine: &Engine) -> miette::Result<()> {
         Engine::Translate(args) => translate::run(args),
         Engine::Mechanics(args) => mechanics::run(args),
         Engine::Components(args) => components::run(args),
+        Engine::Face(args) => face::run(args),
     }
 }

@@ -1,6 +1,7 @@
 //! The page that every training writes beside its pack: one file an engine, and what they share.
 
 pub mod components;
+pub mod face;
 pub mod mechanics;
 pub mod translate;
 
@@ -48,12 +49,14 @@ impl ReportArgs {
 /// What the device holds and does.
 fn device(report: &mut Report, file: &PackFile) -> miette::Result<()> {
     let pack = file.pack().into_diagnostic()?;
+    let joints = match pack.metadata().joints.len() {
+        0 => String::new(),
+        joints => format!(", at {} frames a second for {joints} joints", pack.metadata().frame_rate),
+    };
     report.heading("On the device").text(&format!(
-        "{} bytes of flash, of which {} are tensors that are used in place, at {} frames a second for {} joints.",
+        "{} bytes of flash, of which {} are tensors that are used in place{joints}.",
         file.bytes().len(),
         pack.payload_len(),
-        pack.metadata().frame_rate,
-        pack.metadata().joints.len()
     ));
     for model in inspect::models(&pack)? {
         let value = |value: &serde_json::Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);

@@ -1,0 +1,161 @@
+//! `kinesic train face`.
+
+use std::path::PathBuf;
+
+use kinesic_host::face::landmarks;
+use kinesic_host::face::{Face, Report, TrainOptions, evaluate, hold_out, train};
+use kinesic_host::pack::{Metric, PackFile, Provenance};
+use kinesic_host::prepare::fingerprint;
+use miette::{IntoDiagnostic, WrapErr, miette};
+use serde::Serialize;
+
+use super::report::{ReportArgs, face::page};
+use crate::commands::output::{check_output, command_line, print_json, spinner, write_whole};
+
+/// Learn how strongly faces show an expression, and how it moves their landmarks
+///
+/// From a CSV table with one face a line: a column that names the picture (image), optionally the person (subject), how
+/// strong the expression is (0 and 1, or steps in between; empty where nobody judged), and 68 landmarks x0, y0, ... x67, y67
+/// in pixels, in the order of iBUG 300-W, which most face trackers give. Some people are held out, and measured at the end.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  kinesic train face --landmarks faces.csv --attribute smile --out smile.kin
+  kinesic train face --landmarks faces.csv --attribute smile --hold-out 0 --clusters 6 --out smile.kin --json
+
+Then:
+  kinesic face smile.kin --image me.jpg --landmarks me.csv --change +0.5 --out more.png")]
+pub struct Args {
+    /// Table of landmarks
+    #[arg(long, value_name = "FILE.csv")]
+    landmarks: PathBuf,
+    /// Column that says how strong the expression is; smile also finds posed_smile and smile_true
+    #[arg(long, value_name = "NAME")]
+    attribute: String,
+    /// Pack to write
+    #[arg(long, value_name = "FILE.kin")]
+    out: PathBuf,
+    /// Clusters of head pose
+    #[arg(long, value_name = "N", default_value_t = 12)]
+    clusters: usize,
+    /// Hidden units of each cluster's network
+    #[arg(long, value_name = "N", default_value_t = 10)]
+    hidden: usize,
+    /// Share of the people, 0 to 0.9, that is not trained on but measured
+    #[arg(long, value_name = "SHARE", default_value_t = 0.2, value_parser = share)]
+    hold_out: f64,
+    /// Seed of all random choices
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Print the results as one JSON object
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    report: ReportArgs,
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(share) if (0.0..=0.9).contains(&share) => Ok(share),
+        _ => Err("expected a number from 0 to 0.9".to_owned()),
+    }
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> miette::Result<()> {
+    check_output(&args.out, "kin")?;
+    args.report.check(&args.out)?;
+    let bar = spinner();
+    bar.set_message("reading the landmarks");
+    let faces = landmarks::read(&args.landmarks, Some(&args.attribute)).into_diagnostic()?;
+    let out = hold_out(&faces, args.hold_out, args.seed);
+    let part = |held: bool| {
+        let chosen = faces.iter().zip(&out).filter(|(_, out)| **out == held);
+        chosen.map(|(face, _)| face.clone()).collect::<Vec<Face>>()
+    };
+    let (kept, held) = (part(false), part(true));
+    bar.set_message(format!("ranking {} faces", kept.len()));
+    let options = TrainOptions { clusters: args.clusters, hidden: args.hidden, seed: args.seed };
+    let trained = train(&kept, &args.attribute, &options)
+        .into_diagnostic()
+        .wrap_err_with(|| args.landmarks.display().to_string())?;
+
+    let input = fingerprint(&args.landmarks).into_diagnostic();
+    let mut provenance = Provenance {
+        tool: format!("kinesic {}", env!("CARGO_PKG_VERSION")),
+        command: command_line(),
+        seed: args.seed,
+        inputs: vec![input.wrap_err_with(|| args.landmarks.display().to_string())?],
+        notes: trained.notes.clone(),
+        ..Provenance::default()
+    };
+    let preview = PackFile::from_bytes(&trained.model.pack(&provenance));
+    let measure = |faces: &[Face]| evaluate(&preview.pack().into_diagnostic()?, faces).into_diagnostic();
+    let training = measure(&kept)?;
+    let unseen = if held.is_empty() { None } else { Some(measure(&held)?) };
+    provenance.metrics.push(metric("pair_accuracy_training", training.pair_accuracy));
+    if let Some(unseen) = &unseen {
+        provenance.metrics.push(metric("pair_accuracy_people_held_out", unseen.pair_accuracy));
+        provenance.metrics.push(metric("spearman_people_held_out", unseen.spearman));
+    }
+    let bytes = trained.model.pack(&provenance);
+    write_whole(&args.out, &bytes)?;
+    let file = PackFile::from_bytes(&bytes);
+    args.report.write(&args.out, &file, page(&trained, &training, unseen.as_ref(), &file, &kept)?)?;
+    bar.finish_and_clear();
+    let summary = Summary {
+        pack: args.out.display().to_string(),
+        bytes: bytes.len(),
+        attribute: &args.attribute,
+        clusters: trained.model.clusters.len(),
+        strength: trained.model.strength,
+        notes: &trained.notes,
+        training: &training,
+        held_out: unseen.as_ref(),
+    };
+    if args.json {
+        return print_json(&summary);
+    }
+    if training.pairs == 0 {
+        return Err(miette!("no two faces have different labels"));
+    }
+    print(&summary);
+    Ok(())
+}
+
+fn metric(name: &str, value: f64) -> Metric {
+    Metric { name: name.to_owned(), value }
+}
+
+#[derive(Serialize)]
+struct Summary<'a> {
+    pack: String,
+    bytes: usize,
+    attribute: &'a str,
+    clusters: usize,
+    strength: [f32; 2],
+    notes: &'a [String],
+    training: &'a Report,
+    held_out: Option<&'a Report>,
+}
+
+fn print(summary: &Summary) {
+    println!("                       faces      pairs   in the right order   Spearman");
+    for (name, report) in
+        std::iter::once(("trained on", summary.training)).chain(summary.held_out.map(|r| ("held out", r)))
+    {
+        println!(
+            "{name:<18} {:>9} {:>10} {:>18.2} % {:>10.3}",
+            report.faces,
+            report.pairs,
+            100.0 * report.pair_accuracy,
+            report.spearman
+        );
+    }
+    summary.notes.iter().for_each(|note| println!("note: {note}"));
+    let [low, high] = summary.strength;
+    println!(
+        "{}: {} bytes, {} clusters of head pose, strengths from {low:.2} to {high:.2}",
+        summary.pack, summary.bytes, summary.clusters
+    );
+}

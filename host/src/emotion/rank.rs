@@ -1,0 +1,350 @@
+//! The ranking function: `w` such that `w x` is larger where a sample shows more (Chan 2019, eq. 1, after Parikh 2011).
+//!
+//! `1/2 |w|^2 + C (sum over ordered max(0, 1 - w(xi - xj))^2 + sum over similar (w(xi - xj))^2)` is convex with a continuous
+//! gradient: Newton's method in the primal (Chapelle 2007). A pair is two indices, the matrix of pair differences never
+//! exists: gradient and Hessian are `X'` times a vector over the samples, which the pairs fill.
+
+use super::pairs::Pairs;
+use super::samples::{Samples, add_scaled, dot};
+use crate::vector::vectorised;
+
+/// How to minimise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RankOptions {
+    /// `C`, the cost of a violated pair. [`choose_cost`](super::choose_cost) finds one by validation.
+    pub cost: f64,
+    /// Done when the gradient has fallen to this share of the first one.
+    pub tolerance: f64,
+    /// At most so many Newton steps.
+    pub max_steps: usize,
+}
+
+impl Default for RankOptions {
+    fn default() -> Self {
+        Self { cost: 1.0, tolerance: 1e-5, max_steps: 60 }
+    }
+}
+
+/// A ranking function and how it was found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ranked {
+    /// `w`.
+    pub weights: Vec<f64>,
+    /// The objective at the start and after every Newton step.
+    pub history: Vec<f64>,
+}
+
+impl Ranked {
+    /// `w x`.
+    pub fn score(&self, sample: &[f64]) -> f64 {
+        dot(&self.weights, sample)
+    }
+
+    /// `w x` of every sample.
+    pub fn scores(&self, samples: &Samples) -> Vec<f64> {
+        let mut scores = Vec::new();
+        samples.product(&self.weights, &mut scores);
+        scores
+    }
+}
+
+/// Minimises from `start` (zeros: `&[]`). Only differences of samples count: subtract a mean or not.
+///
+/// Cost of a conjugate-gradient step: `2 rows x columns` multiply-adds and two a violated pair. Memory: a few vectors.
+pub fn rank(samples: &Samples, pairs: &Pairs, options: &RankOptions, start: &[f64]) -> Ranked {
+    let mut problem = Problem::new(samples, pairs, options.cost);
+    let mut weights = vec![0.0; samples.columns()];
+    weights.iter_mut().zip(start).for_each(|(to, from)| *to = *from);
+    let mut scores = Vec::new();
+    samples.product(&weights, &mut scores);
+    let mut gradient = vec![0.0; weights.len()];
+    let mut objective = problem.gradient(&weights, &scores, &mut gradient);
+    let mut history = vec![objective];
+    // A warm start begins with a small gradient: the share is of what zero would have.
+    let first = if start.is_empty() { norm(&gradient) } else { problem.norm_at_zero() };
+    let mut moved = Vec::new();
+    for _ in 0..options.max_steps {
+        let size = norm(&gradient);
+        if size <= options.tolerance * first {
+            break;
+        }
+        let rest = (size / first).sqrt().min(0.1);
+        let step = problem.newton_step(&gradient, rest);
+        samples.product(&step, &mut moved);
+        let length = problem.line_search(&weights, &scores, &step, &moved);
+        let before = (weights.clone(), scores.clone(), objective);
+        add_scaled(&mut weights, length, &step);
+        add_scaled(&mut scores, length, &moved);
+        objective = problem.gradient(&weights, &scores, &mut gradient);
+        // Where only rounding is left to gain.
+        if objective >= before.2 {
+            if objective > before.2 {
+                weights = before.0;
+            }
+            break;
+        }
+        history.push(objective);
+    }
+    Ranked { weights, history }
+}
+
+/// Value at `weights`, for checks: the definition.
+pub fn objective(samples: &Samples, pairs: &Pairs, cost: f64, weights: &[f64]) -> f64 {
+    let mut scores = Vec::new();
+    samples.product(weights, &mut scores);
+    Problem::new(samples, pairs, cost).gradient(weights, &scores, &mut vec![0.0; weights.len()])
+}
+
+struct Problem<'a> {
+    samples: &'a Samples<'a>,
+    pairs: &'a Pairs,
+    cost: f64,
+    /// Mean of the samples and mean square distance from it, by column: for the preconditioner.
+    spread: Vec<f64>,
+    /// Ordered pairs that are violated at the last gradient.
+    active: Vec<[u32; 2]>,
+    /// One number a sample, filled by pairs.
+    pull: Vec<f64>,
+    image: Vec<f64>,
+}
+
+impl<'a> Problem<'a> {
+    fn new(samples: &'a Samples<'a>, pairs: &'a Pairs, cost: f64) -> Self {
+        let mean = samples.mean();
+        let mut spread = vec![0.0; samples.columns()];
+        vectorised(|| {
+            for row in samples.iter() {
+                spread.iter_mut().zip(row).zip(&mean).for_each(|((s, x), m)| *s += (x - m) * (x - m));
+            }
+        });
+        spread.iter_mut().for_each(|s| *s /= samples.rows().max(1) as f64);
+        let pull = vec![0.0; samples.rows()];
+        Self { samples, pairs, cost, spread, active: Vec::new(), pull, image: Vec::new() }
+    }
+
+    /// Objective, gradient, and the violated pairs.
+    fn gradient(&mut self, weights: &[f64], scores: &[f64], gradient: &mut [f64]) -> f64 {
+        self.pull.fill(0.0);
+        self.active.clear();
+        let mut loss = 0.0;
+        for pair in &self.pairs.ordered {
+            let [i, j] = pair.map(|i| i as usize);
+            let short = 1.0 - (scores[i] - scores[j]);
+            if short > 0.0 {
+                self.active.push(*pair);
+                loss += short * short;
+                self.pull[i] -= short;
+                self.pull[j] += short;
+            }
+        }
+        for [i, j] in &self.pairs.similar {
+            let (i, j) = (*i as usize, *j as usize);
+            let apart = scores[i] - scores[j];
+            loss += apart * apart;
+            self.pull[i] += apart;
+            self.pull[j] -= apart;
+        }
+        self.pull.iter_mut().for_each(|p| *p *= 2.0 * self.cost);
+        gradient.copy_from_slice(weights);
+        self.samples.add_transposed(&self.pull, gradient);
+        0.5 * dot(weights, weights) + self.cost * loss
+    }
+
+    fn norm_at_zero(&mut self) -> f64 {
+        let mut pull = vec![0.0; self.samples.rows()];
+        for [i, j] in &self.pairs.ordered {
+            pull[*i as usize] -= 2.0 * self.cost;
+            pull[*j as usize] += 2.0 * self.cost;
+        }
+        let mut gradient = vec![0.0; self.samples.columns()];
+        self.samples.add_transposed(&pull, &mut gradient);
+        norm(&gradient)
+    }
+
+    /// `H v = v + 2 C X' L X v`, `L` the Laplacian of the similar and of the violated pairs.
+    fn hessian(&mut self, v: &[f64], out: &mut [f64]) {
+        self.samples.product(v, &mut self.image);
+        self.pull.fill(0.0);
+        let factor = 2.0 * self.cost;
+        for [i, j] in self.active.iter().chain(&self.pairs.similar) {
+            let (i, j) = (*i as usize, *j as usize);
+            let apart = factor * (self.image[i] - self.image[j]);
+            self.pull[i] += apart;
+            self.pull[j] -= apart;
+        }
+        out.copy_from_slice(v);
+        self.samples.add_transposed(&self.pull, out);
+    }
+
+    /// `-H^-1 gradient` by conjugate gradients, down to the share `rest` of the gradient. The preconditioner is the diagonal of
+    /// the Hessian that independent samples would have.
+    fn newton_step(&mut self, gradient: &[f64], rest: f64) -> Vec<f64> {
+        let pairs = (self.active.len() + self.pairs.similar.len()) as f64;
+        let scale = |g: f64, spread: f64| g / (1.0 + 4.0 * self.cost * pairs * spread);
+        let inverse: Vec<f64> = self.spread.iter().map(|s| scale(1.0, *s)).collect();
+        let mut step = vec![0.0; gradient.len()];
+        let mut residual: Vec<f64> = gradient.iter().map(|g| -g).collect();
+        let conditioned = |r: &[f64]| r.iter().zip(&inverse).map(|(r, i)| r * i).collect::<Vec<f64>>();
+        let mut direction = conditioned(&residual);
+        let mut energy = dot(&residual, &direction);
+        let wanted = rest * norm(gradient);
+        let mut image = vec![0.0; gradient.len()];
+        // In exact arithmetic it ends after as many steps as there are columns.
+        for _ in 0..2 * gradient.len() {
+            self.hessian(&direction, &mut image);
+            let length = energy / dot(&direction, &image);
+            if !length.is_finite() {
+                break;
+            }
+            add_scaled(&mut step, length, &direction);
+            add_scaled(&mut residual, -length, &image);
+            if norm(&residual) <= wanted {
+                break;
+            }
+            let next = conditioned(&residual);
+            let after = dot(&residual, &next);
+            let share = after / energy;
+            energy = after;
+            direction.iter_mut().zip(&next).for_each(|(d, n)| *d = n + share * *d);
+        }
+        step
+    }
+
+    /// The length that minimises along `step`: a convex, piecewise quadratic function of one number; Newton on its slope,
+    /// kept between a length at which it falls and one at which it rises.
+    fn line_search(&self, weights: &[f64], scores: &[f64], step: &[f64], moved: &[f64]) -> f64 {
+        let (along, own) = (dot(weights, step), dot(step, step));
+        let slope = |t: f64| {
+            let (mut first, mut second) = (0.0, 0.0);
+            for [i, j] in &self.pairs.ordered {
+                let (i, j) = (*i as usize, *j as usize);
+                let apart = moved[i] - moved[j];
+                let short = 1.0 - (scores[i] - scores[j]) - t * apart;
+                if short > 0.0 {
+                    first -= short * apart;
+                    second += apart * apart;
+                }
+            }
+            for [i, j] in &self.pairs.similar {
+                let (i, j) = (*i as usize, *j as usize);
+                let apart = moved[i] - moved[j];
+                first += (scores[i] - scores[j] + t * apart) * apart;
+                second += apart * apart;
+            }
+            (along + t * own + 2.0 * self.cost * first, own + 2.0 * self.cost * second)
+        };
+        let (mut low, mut high, mut t) = (0.0, f64::INFINITY, 1.0);
+        let steep = slope(0.0).0.abs();
+        for _ in 0..30 {
+            let (first, second) = slope(t);
+            if first.abs() <= 1e-3 * steep {
+                break;
+            }
+            if first < 0.0 {
+                low = t
+            } else {
+                high = t
+            }
+            let newton = t - first / second;
+            t = if newton > low && newton < high { newton } else { 0.5 * (low + high.min(2.0 * low + 1.0)) };
+        }
+        t
+    }
+}
+
+fn norm(v: &[f64]) -> f64 {
+    dot(v, v).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::rngs::ChaCha8Rng;
+    use rand::{RngExt, SeedableRng};
+
+    use super::super::pairs::pair_accuracy;
+    use super::*;
+
+    /// Samples with a hidden direction, and pairs by it.
+    fn made(rows: usize, columns: usize, seed: u64) -> (Vec<f64>, Vec<f64>, Pairs) {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let values: Vec<f64> = (0..rows * columns).map(|_| random.random_range(-1.0..1.0)).collect();
+        let truth: Vec<f64> = (0..columns).map(|_| random.random_range(-1.0..1.0)).collect();
+        let scores: Vec<f64> = values.chunks_exact(columns).map(|row| dot(row, &truth)).collect();
+        let levels: Vec<Option<f64>> = scores.iter().map(|s| Some((2.0 * s).round())).collect();
+        (values, scores, Pairs::of_levels(&levels, &vec![0; rows], 0.0))
+    }
+
+    #[test]
+    fn the_gradient_is_that_of_finite_differences_and_the_hessian_that_of_the_gradient() {
+        let (values, _, pairs) = made(30, 7, 1);
+        let samples = Samples::new(&values, 7);
+        let mut problem = Problem::new(&samples, &pairs, 0.3);
+        let weights: Vec<f64> = (0..7).map(|k| 0.3 * f64::from(k) - 1.0).collect();
+        let mut at = |weights: &[f64]| {
+            let mut gradient = vec![0.0; 7];
+            let value = problem.gradient(
+                weights,
+                &Ranked { weights: weights.to_vec(), history: vec![] }.scores(&samples),
+                &mut gradient,
+            );
+            (value, gradient)
+        };
+        let step = 1e-6;
+        let mut columns = Vec::new();
+        for k in 0..7 {
+            let (mut up, mut down) = (weights.clone(), weights.clone());
+            up[k] += step;
+            down[k] -= step;
+            let (up, down) = (at(&up), at(&down));
+            let slope = (up.0 - down.0) / (2.0 * step);
+            let analytic = at(&weights).1[k];
+            assert!((slope - analytic).abs() < 1e-6 * analytic.abs().max(1.0), "{k}: {slope} {analytic}");
+            columns.push(up.1.iter().zip(&down.1).map(|(u, d)| (u - d) / (2.0 * step)).collect::<Vec<f64>>());
+        }
+        at(&weights);
+        let v: Vec<f64> = (0..7).map(|k| f64::from(k * k % 5) - 2.0).collect();
+        let mut image = vec![0.0; 7];
+        problem.hessian(&v, &mut image);
+        for (k, image) in image.iter().enumerate() {
+            let numeric: f64 = columns.iter().zip(&v).map(|(column, v)| column[k] * v).sum();
+            assert!((numeric - image).abs() < 1e-4 * image.abs().max(1.0), "{k}: {numeric} {image}");
+        }
+    }
+
+    #[test]
+    fn the_objective_falls_to_where_its_gradient_vanishes() {
+        let (values, _, pairs) = made(60, 12, 2);
+        let samples = Samples::new(&values, 12);
+        for cost in [1e-4, 1e-2, 1.0, 100.0] {
+            let options = RankOptions { cost, tolerance: 1e-9, ..RankOptions::default() };
+            let ranked = rank(&samples, &pairs, &options, &[]);
+            assert!(ranked.history.windows(2).all(|w| w[1] < w[0]), "{:?}", ranked.history);
+            let mut problem = Problem::new(&samples, &pairs, cost);
+            let mut gradient = vec![0.0; 12];
+            problem.gradient(&ranked.weights, &ranked.scores(&samples), &mut gradient);
+            assert!(norm(&gradient) < 1e-6 * problem.norm_at_zero(), "C = {cost}: {}", norm(&gradient));
+            let last = *ranked.history.last().unwrap();
+            assert!((objective(&samples, &pairs, cost, &ranked.weights) - last).abs() < 1e-9 * last);
+            let warm = rank(&samples, &pairs, &options, &ranked.weights);
+            assert!(warm.history.len() <= 2, "a solution is left alone: {:?}", warm.history);
+        }
+    }
+
+    #[test]
+    fn unseen_samples_are_put_in_order() {
+        let (values, _, pairs) = made(200, 20, 3);
+        let samples = Samples::new(&values, 20);
+        let half: Vec<bool> = (0..200).map(|i| i % 2 == 0).collect();
+        let other: Vec<bool> = half.iter().map(|h| !h).collect();
+        let ranked = rank(&samples, &pairs.among(&half), &RankOptions::default(), &[]);
+        let accuracy = pair_accuracy(&ranked.scores(&samples), &pairs.among(&other).ordered);
+        assert!(accuracy > 0.97, "{accuracy}");
+    }
+
+    #[test]
+    fn without_pairs_nothing_is_preferred() {
+        let (values, ..) = made(5, 3, 4);
+        let ranked = rank(&Samples::new(&values, 3), &Pairs::default(), &RankOptions::default(), &[]);
+        assert_eq!(ranked.weights, [0.0; 3]);
+    }
+}

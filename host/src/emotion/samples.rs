@@ -1,0 +1,93 @@
+//! Rows of samples and the two products that everything here is made of.
+
+use faer::MatRef;
+
+use crate::vector::vectorised;
+
+/// Sums of a product that run side by side: one order of summation, whatever the machine.
+const LANES: usize = 8;
+
+/// Samples, row-major `[rows x columns]`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Samples<'a> {
+    values: &'a [f64],
+    columns: usize,
+}
+
+impl<'a> Samples<'a> {
+    /// `values` cut into rows of `columns`; what is left over is ignored.
+    pub fn new(values: &'a [f64], columns: usize) -> Self {
+        Self { values, columns: columns.max(1) }
+    }
+
+    /// Number of samples.
+    pub fn rows(&self) -> usize {
+        self.values.len() / self.columns
+    }
+
+    /// Numbers of a sample.
+    pub fn columns(&self) -> usize {
+        self.columns
+    }
+
+    /// The samples in order.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &'a [f64]> + Clone + use<'a> {
+        self.values.chunks_exact(self.columns)
+    }
+
+    /// One sample.
+    pub fn row(&self, index: usize) -> &'a [f64] {
+        &self.values[index * self.columns..][..self.columns]
+    }
+
+    /// `X w`: one number a sample. Cost: `rows x columns` multiply-adds.
+    pub fn product(&self, weights: &[f64], out: &mut Vec<f64>) {
+        out.clear();
+        vectorised(|| out.extend(self.iter().map(|row| dot(row, weights))));
+    }
+
+    /// `out += X' r`. Cost: `rows x columns` multiply-adds.
+    pub fn add_transposed(&self, factors: &[f64], out: &mut [f64]) {
+        vectorised(|| {
+            for (row, factor) in self.iter().zip(factors) {
+                // Many a motion is in no violated pair.
+                if *factor != 0.0 {
+                    add_scaled(out, *factor, row);
+                }
+            }
+        });
+    }
+
+    /// The samples as a matrix of faer's.
+    pub(super) fn matrix(&self) -> MatRef<'a, f64> {
+        MatRef::from_row_major_slice(&self.values[..self.rows() * self.columns], self.rows(), self.columns)
+    }
+
+    /// Mean of every column.
+    pub fn mean(&self) -> Vec<f64> {
+        let mut mean = vec![0.0; self.columns];
+        self.iter().for_each(|row| add_scaled(&mut mean, 1.0, row));
+        mean.iter_mut().for_each(|m| *m /= self.rows().max(1) as f64);
+        mean
+    }
+}
+
+/// `sum a b` over the shorter length.
+#[inline(always)]
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut lanes = [0.0; LANES];
+    let ((a, rest_a), (b, rest_b)) = (a.as_chunks::<LANES>(), b.as_chunks::<LANES>());
+    for (a, b) in a.iter().zip(b) {
+        for ((lane, a), b) in lanes.iter_mut().zip(a).zip(b) {
+            *lane += a * b;
+        }
+    }
+    let rest: f64 = rest_a.iter().zip(rest_b).map(|(a, b)| a * b).sum();
+    lanes.iter().sum::<f64>() + rest
+}
+
+/// `to += factor from`.
+#[inline(always)]
+pub(super) fn add_scaled(to: &mut [f64], factor: f64, from: &[f64]) {
+    to.iter_mut().zip(from).for_each(|(to, from)| *to += factor * from);
+}

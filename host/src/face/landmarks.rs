@@ -1,0 +1,165 @@
+//! Tables of landmarks: one face a line, `x0,y0,...,x67,y67` and what is known about it.
+
+use std::path::{Path, PathBuf};
+
+use kinesic::face::{FaceFrame, Landmarks, POINTS};
+
+/// Names under which tables hold the picture's file name, and the person's.
+const PICTURE: [&str; 3] = ["image", "image_id", "file"];
+const PERSON: [&str; 2] = ["subject", "person"];
+
+/// A face of a table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Face {
+    /// Name of the picture.
+    pub picture: String,
+    /// Whose face it is; the picture's name where the table does not say.
+    pub person: String,
+    /// How strong the expression is, where somebody judged it: 0 and 1, or steps in between.
+    pub label: Option<f64>,
+    /// The landmarks.
+    pub landmarks: Landmarks,
+    /// Line in the file.
+    pub line: u64,
+}
+
+/// Why a table of landmarks cannot be used.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{}: {fault}", path.display())]
+pub struct LandmarksError {
+    /// The file.
+    pub path: PathBuf,
+    /// Where and how.
+    pub fault: LandmarksFault,
+}
+
+/// What is wrong with a table of landmarks, and where. Lines count from 1, the header is line 1.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+#[allow(missing_docs)] // The messages say what the fields are.
+pub enum LandmarksFault {
+    #[error("cannot be read: {error}. Check the path")]
+    Io { error: String },
+    #[error("the file is empty, expected a header 'image,subject,smile,x0,y0,...,x67,y67' and one line a face")]
+    Empty,
+    #[error("there is a header and no face: expected one line a face")]
+    NoFace,
+    #[error("line {line}: not readable as CSV text: {error}. Save the file as UTF-8 CSV with commas")]
+    Csv { line: u64, error: String },
+    #[error(
+        "line 1: the column '{column}' is missing. Expected x0, y0, ... x67, y67: 68 landmarks in the order of iBUG 300-W \
+         (0-16 contour, 17-26 brows, 27-35 nose, 36-47 eyes, 48-67 mouth)"
+    )]
+    MissingColumn { column: String },
+    #[error("line 1: no column names the picture: expected one of image, image_id, file")]
+    NoPicture,
+    #[error(
+        "line 1: no column '{attribute}' (nor 'posed_{attribute}' or '{attribute}_true'). Columns beside the landmarks: {found}"
+    )]
+    NoAttribute { attribute: String, found: String },
+    #[error(
+        "line {line}: {found} cells, the header has {expected}. The line is cut off or has a comma too many; correct or remove it"
+    )]
+    Row { line: u64, found: usize, expected: usize },
+    #[error("line {line}, column '{column}': '{found}' is not a finite number. Write it like 251.5")]
+    NotANumber { line: u64, column: String, found: String },
+    #[error("line {line}: the landmarks are in one place, or the eyes are: this is no face. Remove the line")]
+    Degenerate { line: u64 },
+    #[error(
+        "line {line}: the brows are below the mouth: expected y to point down in the picture, and landmarks 36-41 to be the \
+         right eye of the person, on the left in the picture. Turn y round (height - y), or mirror the numbering"
+    )]
+    UpsideDown { line: u64 },
+}
+
+/// The faces of a CSV file. `attribute` names the column of judgements; without one no face has a label.
+///
+/// `smile` is looked for as `smile`, then as `posed_smile`, then as `smile_true`; an empty cell is a face that nobody judged.
+pub fn read(path: &Path, attribute: Option<&str>) -> Result<Vec<Face>, LandmarksError> {
+    let refuse = |fault| LandmarksError { path: path.to_owned(), fault };
+    let bytes = std::fs::read(path).map_err(|error| refuse(LandmarksFault::Io { error: error.to_string() }))?;
+    parse(&bytes, attribute).map_err(refuse)
+}
+
+/// The faces of the bytes of a CSV file; see [`read`].
+pub fn parse(bytes: &[u8], attribute: Option<&str>) -> Result<Vec<Face>, LandmarksFault> {
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    if bytes.trim_ascii().is_empty() {
+        return Err(LandmarksFault::Empty);
+    }
+    let mut reader = csv::ReaderBuilder::new().flexible(true).trim(csv::Trim::All).from_reader(bytes);
+    let broken =
+        |e: csv::Error| LandmarksFault::Csv { line: e.position().map_or(1, |p| p.line()), error: e.to_string() };
+    let header = reader.headers().map_err(broken)?.clone();
+    let columns = Columns::find(&header, attribute)?;
+    let mut faces = Vec::new();
+    let mut record = csv::StringRecord::new();
+    while reader.read_record(&mut record).map_err(broken)? {
+        let line = record.position().map_or(0, |p| p.line());
+        if record.len() != header.len() {
+            return Err(LandmarksFault::Row { line, found: record.len(), expected: header.len() });
+        }
+        faces.push(columns.face(&header, &record, line)?);
+    }
+    if faces.is_empty() { Err(LandmarksFault::NoFace) } else { Ok(faces) }
+}
+
+/// Where things stand in a line.
+struct Columns {
+    picture: usize,
+    person: Option<usize>,
+    label: Option<usize>,
+    points: Vec<[usize; 2]>,
+}
+
+impl Columns {
+    fn find(header: &csv::StringRecord, attribute: Option<&str>) -> Result<Self, LandmarksFault> {
+        let find = |name: &str| header.iter().position(|h| h.eq_ignore_ascii_case(name));
+        let point = |column: String| find(&column).ok_or(LandmarksFault::MissingColumn { column });
+        let points = (0..POINTS).map(|i| Ok([point(format!("x{i}"))?, point(format!("y{i}"))?]));
+        let points = points.collect::<Result<Vec<_>, _>>()?;
+        let named = |attribute: &str| {
+            let names = [attribute.to_owned(), format!("posed_{attribute}"), format!("{attribute}_true")];
+            names.iter().find_map(|name| find(name)).ok_or_else(|| {
+                let others = header.iter().enumerate().filter(|(at, _)| !points.as_flattened().contains(at));
+                let found = others.map(|(_, name)| name).collect::<Vec<_>>().join(", ");
+                LandmarksFault::NoAttribute { attribute: attribute.to_owned(), found }
+            })
+        };
+        Ok(Self {
+            picture: PICTURE.iter().find_map(|name| find(name)).ok_or(LandmarksFault::NoPicture)?,
+            person: PERSON.iter().find_map(|name| find(name)),
+            label: attribute.map(named).transpose()?,
+            points,
+        })
+    }
+
+    fn face(&self, header: &csv::StringRecord, record: &csv::StringRecord, line: u64) -> Result<Face, LandmarksFault> {
+        let text = |at: usize| record.get(at).unwrap_or_default();
+        let number = |at: usize| match text(at).parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(value),
+            _ => {
+                let column = header.get(at).unwrap_or_default().to_owned();
+                Err(LandmarksFault::NotANumber { line, column, found: text(at).to_owned() })
+            }
+        };
+        let mut landmarks: Landmarks = [[0.0; 2]; POINTS];
+        for (point, at) in landmarks.iter_mut().zip(&self.points) {
+            *point = [number(at[0])? as f32, number(at[1])? as f32];
+        }
+        let frame = FaceFrame::of(&landmarks).ok_or(LandmarksFault::Degenerate { line })?;
+        let shape = frame.shape(&landmarks);
+        let height = |points: &[[f32; 2]]| points.iter().map(|p| p[1]).sum::<f32>() / points.len() as f32;
+        if height(&shape[..5]) > height(&shape[31..]) {
+            return Err(LandmarksFault::UpsideDown { line });
+        }
+        let label = self.label.filter(|at| !text(*at).is_empty()).map(number).transpose()?;
+        Ok(Face {
+            picture: text(self.picture).to_owned(),
+            person: text(self.person.unwrap_or(self.picture)).to_owned(),
+            label,
+            landmarks,
+            line,
+        })
+    }
+}
