@@ -102,8 +102,8 @@ fn worst(row: &Row, bits: impl Iterator<Item = u32>) -> (f64, f32, u64) {
         let x = f32::from_bits(bits);
         for x in [Some(x), row.signs.then_some(-x)].into_iter().flatten() {
             let error = (f64::from((row.found)(x)) - (row.exact)(f64::from(x))).abs();
-            // Written so that a NaN is the worst of all.
-            if !(error <= worst.0) {
+            // A NaN is the worst of all.
+            if error > worst.0 || error.is_nan() {
                 (worst.0, worst.1) = (error, x);
             }
             worst.2 += 1;

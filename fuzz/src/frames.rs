@@ -51,17 +51,17 @@ impl Frames {
             let [x, y, z] = [(); 3].map(|()| 0.5 * self.unit());
             *q = UnitQuaternion::new_normalize(Quaternion::new(1.0, x, y, z));
         }
-        if self.next() % 8 == 0 {
+        if self.next().is_multiple_of(8) {
             let (joint, axis) = ((self.next() % JOINTS as u64) as usize, (self.next() % 4) as usize);
             let odd = ODD[(self.next() % 8) as usize];
             let mut q = pose.rotations[joint].into_inner();
             q.coords[axis] = odd;
             pose.rotations[joint] = UnitQuaternion::new_unchecked(q);
-            if self.next() % 4 == 0 {
+            if self.next().is_multiple_of(4) {
                 pose.root[axis % 3] = odd;
             }
         }
-        if self.next() % 16 == 0 {
+        if self.next().is_multiple_of(16) {
             for q in &mut pose.rotations {
                 let [w, x, y, z] = [(); 4].map(|()| f32::from_bits(self.next() as u32));
                 *q = UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z));

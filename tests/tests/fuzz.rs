@@ -17,7 +17,9 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 
 /// A target, and how many damaged inputs a test run gives it.
-const TARGETS: [(&str, fn(&[u8]), usize); 4] =
+type Target = (&'static str, fn(&[u8]), usize);
+
+const TARGETS: [Target; 4] =
     [("pack", fuzz::pack, 6000), ("bvh", fuzz::bvh, 2000), ("csv", fuzz::csv, 500), ("map", fuzz::map, 10_000)];
 
 fn folder(kind: &str, target: &str) -> PathBuf {
