@@ -11,6 +11,7 @@
 //! | [`mechanics`] | what the body must do, what is expression: decouple, modulate, mix, blend | Boehs 2017 |
 //! | [`components`] | style components applied to a live pose or to a stored stream of weights | Phong 2018 |
 //! | [`face`] | strength of a facial expression -> landmarks | Chan 2019 |
+//! | [`limit`] | the last stage: frames at fault quarantined; position, velocity and acceleration limits | |
 //! | [`kernel`] | the few inner loops: matrix x vector, modal recursion, activations | |
 //!
 //! Units are metres, radians, seconds and frames; right-handed, Y up; a person who faces +Z has the left hand at +X.
@@ -47,6 +48,7 @@ compile_error!("packs are little-endian and used in place: kinesic needs a littl
 pub mod components;
 pub mod face;
 pub mod kernel;
+pub mod limit;
 pub mod mechanics;
 pub mod model;
 pub mod pose;
@@ -54,6 +56,7 @@ pub mod translate;
 
 pub use components::{Components, ComponentsState};
 pub use face::{FaceState, FaceSynth};
+pub use limit::{LimitState, LimitTable, Limiter};
 pub use mechanics::{BodyMechanics, MechanicsState};
 pub use model::{LoadError, Pack};
 pub use pose::{Pose, Skeleton};

@@ -18,6 +18,8 @@ pub enum Kind {
     Components = 3,
     /// Strength of a facial expression.
     Face = 5,
+    /// Joint limits.
+    Limits = 6,
 }
 
 impl Kind {
@@ -34,6 +36,7 @@ impl Kind {
             2 => Some(Self::Mechanics),
             3 => Some(Self::Components),
             5 => Some(Self::Face),
+            6 => Some(Self::Limits),
             _ => None,
         }
     }
@@ -79,6 +82,8 @@ pub enum ModelMeta<'a> {
     Components(#[serde(borrow)] ComponentsMeta<'a>),
     /// Strength of a facial expression; its tensors are `face/...`.
     Face(#[serde(borrow)] FaceMeta<'a>),
+    /// Joint limits; their tensors are `limit/...`.
+    Limits(LimitsMeta),
 }
 
 impl<'a> ModelMeta<'a> {
@@ -100,6 +105,11 @@ impl<'a> ModelMeta<'a> {
     /// The face model's shape, if it is one.
     pub fn face(self) -> Option<FaceMeta<'a>> {
         if let Self::Face(meta) = self { Some(meta) } else { None }
+    }
+
+    /// The joint limits' rates and times, if it is such a table.
+    pub fn limits(self) -> Option<LimitsMeta> {
+        if let Self::Limits(meta) = self { Some(meta) } else { None }
     }
 }
 
@@ -168,6 +178,28 @@ pub struct FaceMeta<'a> {
     pub hidden: u32,
     /// Strengths that nearly all training faces lie between; targets are held inside.
     pub strength: [f32; 2],
+}
+
+/// Rates of the root, and what a limiter does when frames fail to come; the joints' limits are tensors.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LimitsMeta {
+    /// Largest speed of the root's position, m/s.
+    pub root_velocity: f32,
+    /// Largest acceleration of the root's position, m/s^2.
+    pub root_acceleration: f32,
+    /// Time for which the last sound frame is held when none comes, s.
+    pub hold: f32,
+    /// Time constant with which the joints then go to rest, s.
+    pub decay: f32,
+    /// Time after which equal frames count as frozen, s; 0 for never.
+    pub frozen: f32,
+}
+
+impl Default for LimitsMeta {
+    /// 5 m/s, 50 m/s^2; half a second, one second; a second.
+    fn default() -> Self {
+        Self { root_velocity: 5.0, root_acceleration: 50.0, hold: 0.5, decay: 1.0, frozen: 1.0 }
+    }
 }
 
 /// Number type of a tensor.
