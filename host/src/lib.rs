@@ -13,6 +13,7 @@ pub mod emotion;
 pub mod face;
 pub mod files;
 pub mod gait;
+pub mod limit;
 pub mod mechanics;
 pub mod models;
 pub mod pack;

@@ -7,6 +7,7 @@ use kinesic::model::{JointMeta, MAGIC, ModelMeta};
 use kinesic_host::clip::{self, JointMap};
 use kinesic_host::components::HostComponents;
 use kinesic_host::face::HostFace;
+use kinesic_host::limit::HostLimiter;
 use kinesic_host::mechanics::HostMechanics;
 use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_host::rig::Rig;
@@ -176,6 +177,19 @@ fn model(pack: &Pack, meta: &ModelMeta, joints: usize) -> miette::Result<ModelRe
                 "plausible_strength": meta.strength,
             });
             ("face", figures)
+        }
+        ModelMeta::Limits(meta) => {
+            let limiter = HostLimiter::load(pack).into_diagnostic()?;
+            let figures = json!({
+                "limited_joints": limiter.table().kinds.iter().filter(|kind| **kind != 0).count(),
+                "root_velocity_m_s": f64::from(meta.root_velocity),
+                "root_acceleration_m_s2": f64::from(meta.root_acceleration),
+                "hold_s": f64::from(meta.hold),
+                "decay_s": f64::from(meta.decay),
+                "frozen_s": f64::from(meta.frozen),
+                "recovery_frames": limiter.recovery_frames(),
+            });
+            ("limits", figures)
         }
     };
     let serde_json::Value::Object(figures) = figures else { unreachable!("json! of braces is an object") };
