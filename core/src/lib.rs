@@ -12,6 +12,7 @@
 //! | [`components`] | style components applied to a live pose or to a stored stream of weights | Phong 2018 |
 //! | [`face`] | strength of a facial expression -> landmarks | Chan 2019 |
 //! | [`limit`] | the last stage: frames at fault quarantined; position, velocity and acceleration limits | |
+//! | [`pipeline`] | everything that runs in a frame as one type with one step: engines, mix, limit | |
 //! | [`kernel`] | the few inner loops: matrix x vector, modal recursion, activations | |
 //!
 //! Units are metres, radians, seconds and frames; right-handed, Y up; a person who faces +Z has the left hand at +X.
@@ -51,6 +52,7 @@ pub mod kernel;
 pub mod limit;
 pub mod mechanics;
 pub mod model;
+pub mod pipeline;
 pub mod pose;
 pub mod translate;
 
@@ -59,6 +61,7 @@ pub use face::{FaceState, FaceSynth};
 pub use limit::{LimitState, LimitTable, Limiter};
 pub use mechanics::{BodyMechanics, MechanicsState};
 pub use model::{LoadError, Pack};
+pub use pipeline::{Pipeline, PipelineState};
 pub use pose::{Pose, Skeleton};
 pub use translate::{Translator, TranslatorState};
 

@@ -28,14 +28,14 @@ pub struct Guard {
 }
 
 impl Guard {
-    /// What is wrong with the next frame, if anything. `frozen` is the number of equal frames that make a fault, 0 for never; the
+    /// The next frame if it is sound, else what is wrong with it. `frozen` is the number of equal frames that make a fault, 0 for never; the
     /// first `joints` rotations count. Cost: 8 operations a number.
-    pub fn check<const JOINTS: usize>(
+    pub fn check<'f, const JOINTS: usize>(
         &mut self,
-        frame: Option<&Pose<JOINTS>>,
+        frame: Option<&'f Pose<JOINTS>>,
         joints: usize,
         frozen: u32,
-    ) -> Result<(), Fault> {
+    ) -> Result<&'f Pose<JOINTS>, Fault> {
         let pose = frame.ok_or(Fault::Missing)?;
         let rotations = pose.rotations.iter().take(joints);
         let numbers = || pose.root.iter().chain(rotations.clone().flat_map(|q| q.coords.iter()));
@@ -49,6 +49,6 @@ impl Guard {
         let hash = numbers().fold(0x811c_9dc5, |hash: u32, x| (hash ^ x.to_bits()).wrapping_mul(0x0100_0193));
         self.repeats = if hash == self.hash { self.repeats.saturating_add(1) } else { 0 };
         self.hash = hash;
-        if frozen > 0 && self.repeats >= frozen { Err(Fault::Frozen) } else { Ok(()) }
+        if frozen > 0 && self.repeats >= frozen { Err(Fault::Frozen) } else { Ok(pose) }
     }
 }

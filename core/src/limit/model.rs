@@ -163,11 +163,11 @@ impl<'a, const JOINTS: usize> Limiter<'a, JOINTS> {
             frozen_frames: if meta.frozen > 0.0 { frames(meta.frozen).max(1) } else { 0 },
             decay: if meta.decay > frame_time { frame_time / meta.decay } else { 1.0 },
         };
-        limiter.check(joints)?;
+        limiter.check_table(joints)?;
         Ok(limiter)
     }
 
-    fn check(&self, joints: usize) -> Result<(), LoadError> {
+    fn check_table(&self, joints: usize) -> Result<(), LoadError> {
         let table = &self.table;
         let counts = [
             ("limit/axes", table.axes.len()),

@@ -3,10 +3,10 @@
 use nalgebra::Vector3;
 
 use super::axis::Coordinate;
-use super::free::{advance, exp, log, norm};
+use super::free::{advance as step_within, exp, log, norm};
 use super::model::Row;
 use super::state::{Clamped, Joint};
-use super::{JointKind, LimitState, Limiter};
+use super::{Fault, JointKind, LimitState, Limiter};
 use crate::pose::{Pose, unit};
 
 /// Further from where it should be, rad or m, a joint counts as clamped.
@@ -50,11 +50,30 @@ impl<const JOINTS: usize> Limiter<'_, JOINTS> {
     /// it is. The next sound frame is the target again; the way to it keeps all limits, and ends within
     /// [`recovery_frames`](Self::recovery_frames) if it stands still. Cost: about 400 multiply-adds a joint.
     pub fn step(&self, state: &mut LimitState<JOINTS>, frame: Option<&Pose<JOINTS>>, out: &mut Pose<JOINTS>) {
+        let checked = self.check(state, frame);
+        self.advance(state, checked, out);
+    }
+
+    /// The guard: the frame if it is sound.
+    pub(crate) fn check<'f>(
+        &self,
+        state: &mut LimitState<JOINTS>,
+        frame: Option<&'f Pose<JOINTS>>,
+    ) -> Result<&'f Pose<JOINTS>, Fault> {
+        state.guard.check(frame, self.joints(), self.frozen_frames)
+    }
+
+    /// One frame that is sound, or why there is none.
+    pub(crate) fn advance(
+        &self,
+        state: &mut LimitState<JOINTS>,
+        frame: Result<&Pose<JOINTS>, Fault>,
+        out: &mut Pose<JOINTS>,
+    ) {
         if !state.started {
             self.at_rest(state);
         }
-        let fault = state.guard.check(frame, self.joints(), self.frozen_frames).err();
-        let sound = if fault.is_none() { frame } else { None };
+        let (sound, fault) = (frame.ok(), frame.err());
         let report = &mut state.report;
         report.fault = fault;
         report.frames = report.frames.saturating_add(1);
@@ -77,7 +96,7 @@ impl<const JOINTS: usize> Limiter<'_, JOINTS> {
                 };
                 let [speed, ..] = row.speed;
                 let [change, ..] = row.change;
-                let went = advance(error, went, left, speed, change);
+                let went = step_within(error, went, left, speed, change);
                 *rotation = unit((exp(went) * *rotation).into_inner());
                 let left = error - went;
                 clamped.rate += u16::from(norm(left) > CLAMPED);
@@ -121,7 +140,7 @@ impl<const JOINTS: usize> Limiter<'_, JOINTS> {
             (state.rooted, state.pose.root) = (true, target);
         }
         let error = target.map_or(state.root_left, |target| target - state.pose.root);
-        let went = advance(error, state.root_went, state.root_left, self.root_speed, self.root_change);
+        let went = step_within(error, state.root_went, state.root_left, self.root_speed, self.root_change);
         let at = state.pose.root + went;
         (state.root_went, state.root_left) = (went, target.map_or(error - went, |target| target - at));
         state.pose.root = at;
