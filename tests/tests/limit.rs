@@ -98,7 +98,9 @@ proptest! {
     fn the_bounds_hold_after_any_sequence(source in source()) {
         let tables = limits().tables();
         let limiter = Limiter::<JOINTS>::new(tables.view(), limits().meta, 60.0).unwrap();
-        let (mut state, mut watch, mut out) = (LimitState::new(), Watch::default(), Pose::identity());
+        let (mut state, mut out) = (LimitState::new(), Pose::identity());
+        limiter.start(&mut state, &out);
+        let mut watch = Watch::new(&limiter, &state);
         let mut random = Random(source.seed);
         for at in 0..STEPS {
             let input = frame(&source, &mut random, at);
@@ -107,6 +109,7 @@ proptest! {
         }
         // The same bits again.
         let mut again = LimitState::new();
+        limiter.start(&mut again, &Pose::identity());
         let mut random = Random(source.seed);
         for at in 0..STEPS {
             limiter.step(&mut again, frame(&source, &mut random, at).as_ref(), &mut out);
@@ -187,7 +190,9 @@ fn a_changed_table_does_not_jump() {
     let (wide, narrow) = (model.tables(), narrow.tables());
     let wide = Limiter::<JOINTS>::new(wide.view(), model.meta, 60.0).unwrap();
     let narrow = Limiter::<JOINTS>::new(narrow.view(), model.meta, 60.0).unwrap();
-    let (mut state, mut watch, mut out) = (LimitState::new(), Watch::default(), Pose::identity());
+    let (mut state, mut out) = (LimitState::new(), Pose::identity());
+    wide.start(&mut state, &out);
+    let mut watch = Watch::new(&wide, &state);
     let mut pose = Pose::<JOINTS>::identity();
     for at in 0..400 {
         pose.rotations[2] = UnitQuaternion::from_scaled_axis(Vector3::x() * (1.0 + 0.7 * (at as f32 * 0.1).sin()));

@@ -1,6 +1,10 @@
 //! The model file: golden packs load for ever, damaged ones never.
 
 mod common;
+#[path = "common/engines.rs"]
+mod engines;
+#[path = "common/robot.rs"]
+mod robot;
 
 use std::path::Path;
 
@@ -15,6 +19,17 @@ type Device<'a> = Translator<'a, 19, 1024>;
 /// `docs/pack.md`.
 const GOLDEN: [(&str, FormChoice, usize); 2] =
     [("translator-whole-body.kin", FormChoice::WholeBody, 24), ("translator-per-joint.kin", FormChoice::PerJoint, 12)];
+
+/// The other kinds: the file, and a small seeded pack of that kind.
+const SEEDED: [(&str, fn() -> Vec<u8>); 3] = [
+    ("mechanics.kin", engines::mechanics),
+    ("components.kin", engines::components),
+    ("limits.kin", engines::limits_pack),
+];
+
+fn all() -> impl Iterator<Item = &'static str> {
+    GOLDEN.iter().map(|(name, ..)| *name).chain(SEEDED.iter().map(|(name, _)| *name))
+}
 
 fn golden(name: &str) -> PackFile {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("packs/v1").join(name);
@@ -46,8 +61,33 @@ fn golden_packs_load_and_step() {
 }
 
 #[test]
+fn golden_packs_of_the_other_kinds_load_and_step() {
+    for (name, make) in SEEDED {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("packs/v1").join(name);
+        if std::env::var("KINESIC_GOLDEN").as_deref() == Ok("write") && !path.exists() {
+            std::fs::write(&path, make()).unwrap();
+        }
+    }
+    let packs = engines::Packs {
+        body: golden(GOLDEN[0].0),
+        joint: golden(GOLDEN[1].0),
+        mechanics: golden("mechanics.kin"),
+        components: golden("components.kin"),
+        limits: golden("limits.kin"),
+    };
+    for engine in engines::ENGINES {
+        let device = packs.device(engine);
+        let (mut state, mut motion, mut out) = (engines::State::new(), engines::Motion::new(1), Pose::identity());
+        for _ in 0..100 {
+            device.step(&mut state, Some(&motion.next()), &mut out);
+        }
+        assert!(out.is_sound(robot::JOINTS) && state.engine_faults() == 0, "{engine}");
+    }
+}
+
+#[test]
 fn a_pack_truncated_at_any_byte_is_refused() {
-    for (name, ..) in GOLDEN {
+    for name in all() {
         let file = golden(name);
         for len in 0..file.bytes().len() {
             assert!(Pack::load(&file.bytes()[..len]).is_err(), "{name} cut to {len} bytes loads");
@@ -60,7 +100,7 @@ fn a_pack_truncated_at_any_byte_is_refused() {
 
 #[test]
 fn a_pack_with_any_bit_flipped_is_refused() {
-    for (name, ..) in GOLDEN {
+    for name in all() {
         let mut file = golden(name);
         let bytes = file.bytes().to_vec();
         for bit in 0..8 * bytes.len() {

@@ -248,6 +248,11 @@ impl<'a, const JOINTS: usize> Limiter<'a, JOINTS> {
         &self.table
     }
 
+    /// How far the root may go in a frame, m.
+    pub(crate) fn root_step(&self) -> f32 {
+        self.root_speed
+    }
+
     /// Number of joints.
     pub fn joints(&self) -> usize {
         self.table.kinds.len()

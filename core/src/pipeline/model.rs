@@ -6,6 +6,9 @@ use crate::mechanics::BodyMechanics;
 use crate::model::{LoadError, Pack};
 use crate::translate::Translator;
 
+/// Roots that go this many times as far in a frame as the limits let them have leapt.
+const LEAP: f32 = 4.0;
+
 /// Engines, mix and limits. Capacities of an engine that is not used may be 0.
 ///
 /// `STATES` is the translator's, `UNITS` and `WINDOW` those of body mechanics, `COUNT` that of the components.
@@ -22,6 +25,8 @@ pub struct Pipeline<
     pub(super) mechanics: Option<BodyMechanics<'a, JOINTS, UNITS, WINDOW>>,
     pub(super) components: Option<Components<'a, JOINTS, COUNT>>,
     pub(super) limit: Limiter<'a, JOINTS>,
+    /// Travel of the root in a frame, m, that is no motion.
+    pub(super) leap: f32,
 }
 
 impl<'a, const JOINTS: usize, const STATES: usize, const UNITS: usize, const WINDOW: usize, const COUNT: usize>
@@ -29,7 +34,8 @@ impl<'a, const JOINTS: usize, const STATES: usize, const UNITS: usize, const WIN
 {
     /// Limits alone: the source passes as far as they allow.
     pub fn new(limit: Limiter<'a, JOINTS>) -> Self {
-        Self { translate: None, mechanics: None, components: None, limit }
+        let leap = LEAP * limit.root_step();
+        Self { translate: None, mechanics: None, components: None, limit, leap }
     }
 
     /// Adds style translation. An engine for another number of joints than the limits have is refused.

@@ -1,5 +1,7 @@
 //! What a running pipeline remembers, and what its user may turn.
 
+use nalgebra::Vector3;
+
 use super::Weights;
 use crate::components::ComponentsState;
 use crate::limit::{LimitReport, LimitState};
@@ -20,6 +22,8 @@ pub struct PipelineState<const JOINTS: usize, const STATES: usize, const WINDOW:
     pub weights: Weights,
     pub(super) limit: LimitState<JOINTS>,
     pub(super) engine_faults: u32,
+    /// Root of the last sound source frame.
+    pub(super) last_root: Vector3<f32>,
 }
 
 impl<const JOINTS: usize, const STATES: usize, const WINDOW: usize, const COUNT: usize>
@@ -35,6 +39,7 @@ impl<const JOINTS: usize, const STATES: usize, const WINDOW: usize, const COUNT:
             weights: Weights::default(),
             limit: LimitState::new(),
             engine_faults: 0,
+            last_root: Vector3::zeros(),
         }
     }
 

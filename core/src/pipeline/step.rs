@@ -26,6 +26,12 @@ impl<const JOINTS: usize, const STATES: usize, const UNITS: usize, const WINDOW:
     ) {
         match self.limit.check(&mut state.limit, frame) {
             Ok(source) => {
+                // What the root did while no frame came, or in a leap, would be a kick to the filters.
+                let travel = source.root - state.last_root;
+                if state.report().gap > 0 || travel.dot(&travel) > self.leap * self.leap {
+                    state.translate.rebase(source.root);
+                }
+                state.last_root = source.root;
                 let mixed = self.mix(state, source);
                 self.limit.advance(&mut state.limit, Ok(&mixed), out);
             }

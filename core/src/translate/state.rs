@@ -30,6 +30,11 @@ impl<const JOINTS: usize, const STATES: usize> TranslatorState<JOINTS, STATES> {
         }
     }
 
+    /// The next frame's root is taken to have stood here before: a gap or a leap is no travel.
+    pub(crate) fn rebase(&mut self, root: Vector3<f32>) {
+        self.last_root = Some(root);
+    }
+
     /// Forgets the past, keeps the controls.
     pub fn reset(&mut self) {
         *self = Self { controls: self.controls, ..Self::new() };

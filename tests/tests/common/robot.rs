@@ -38,6 +38,13 @@ pub struct Watch {
 }
 
 impl Watch {
+    /// From a state that stands still.
+    pub fn new(limiter: &Limiter<'_, JOINTS>, state: &LimitState<JOINTS>) -> Self {
+        let mut watch = Self::default();
+        watch.check(limiter, state, &state.pose().clone(), "start");
+        watch
+    }
+
     /// Every bound of every coordinate, after any input. Positions hold exactly; rates to the rounding of the position.
     pub fn check(&mut self, limiter: &Limiter<'_, JOINTS>, state: &LimitState<JOINTS>, out: &Pose<JOINTS>, what: &str) {
         let (table, time) = (limiter.table(), 1.0 / 60.0f32);
@@ -81,7 +88,7 @@ impl Watch {
                 }
             }
         }
-        // It starts at rest.
+        // The first is standing still.
         self.went = Some((went, travel, turned));
         self.last = Some((angles, *out));
     }
