@@ -62,6 +62,8 @@ pub fn rust_module(file: &PackFile, origin: &str) -> Result<String, LoadError> {
             ModelMeta::Face(meta) => {
                 constant("Hidden units of a cluster of head pose", "UNITS", &meta.hidden, "usize");
             }
+            // As many joints as a pose.
+            ModelMeta::Limits(_) => {}
         }
     }
     let _ = write!(
@@ -93,5 +95,6 @@ fn engine(meta: &ModelMeta) -> (&'static str, &'static str) {
         ModelMeta::Mechanics(_) => ("BodyMechanics::<JOINTS, UNITS, WINDOW>", "MechanicsState"),
         ModelMeta::Components(_) => ("Components::<JOINTS, COMPONENTS>", "ComponentsState"),
         ModelMeta::Face(_) => ("FaceSynth::<UNITS>", "FaceState"),
+        ModelMeta::Limits(_) => ("Limiter::<JOINTS>", "LimitState"),
     }
 }

@@ -5,6 +5,7 @@
 
 mod components;
 mod face;
+mod limit;
 mod mechanics;
 pub mod recorded;
 mod translator;
@@ -78,6 +79,7 @@ const ALL: &[(&str, Make)] = &[
     ("translator-body", translator::whole_body),
     ("mechanics", mechanics::prepare),
     ("components", components::prepare),
+    ("limit", limit::prepare),
     ("face", face::prepare),
 ];
 
