@@ -5,7 +5,7 @@ mod engines;
 #[path = "common/robot.rs"]
 mod robot;
 
-use engines::{ENGINES, Motion, Packs, Random, State};
+use engines::{ENGINES, Motion, Packs, Random, State, new_state};
 use kinesic::Pose;
 use kinesic::pipeline::Weights;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
@@ -15,7 +15,7 @@ use robot::{JOINTS, Watch};
 const START: usize = 200;
 const FRAMES: usize = 900;
 /// Frames after the fault's end within which every rotation is back.
-const RECOVERY: usize = 300;
+const RECOVERY: usize = 200;
 /// As near as this is back, rad (chord of the quaternions).
 const BACK: f32 = 5e-3;
 
@@ -155,7 +155,7 @@ fn run(packs: &Packs, engine: &str, fault: Option<&(&str, usize, Fault)>) -> Run
     let device = packs.device(engine);
     let other = packs.device(if engine == "style components" { "limit alone" } else { "style components" });
     let limiter = device.limiter();
-    let (mut state, mut motion, mut random) = (State::new(), Motion::new(3), Random(9));
+    let (mut state, mut motion, mut random) = (new_state(), Motion::new(3), Random(9));
     let first = Motion::new(3).next();
     device.start(&mut state, &first);
     let mut watch = Watch::new(limiter, state.limit());

@@ -77,7 +77,7 @@ fn golden_packs_of_the_other_kinds_load_and_step() {
     };
     for engine in engines::ENGINES {
         let device = packs.device(engine);
-        let (mut state, mut motion, mut out) = (engines::State::new(), engines::Motion::new(1), Pose::identity());
+        let (mut state, mut motion, mut out) = (engines::new_state(), engines::Motion::new(1), Pose::identity());
         for _ in 0..100 {
             device.step(&mut state, Some(&motion.next()), &mut out);
         }

@@ -5,7 +5,6 @@
 
 mod components;
 mod face;
-mod limit;
 mod mechanics;
 pub mod recorded;
 mod translator;
@@ -79,7 +78,6 @@ const ALL: &[(&str, Make)] = &[
     ("translator-body", translator::whole_body),
     ("mechanics", mechanics::prepare),
     ("components", components::prepare),
-    ("limit", limit::prepare),
     ("face", face::prepare),
 ];
 

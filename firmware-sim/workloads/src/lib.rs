@@ -8,7 +8,6 @@ pub mod components;
 mod digest;
 pub mod face;
 mod frames;
-pub mod limit;
 pub mod mechanics;
 pub mod pose;
 pub mod translator;

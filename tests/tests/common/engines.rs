@@ -32,6 +32,13 @@ pub const ENGINES: [&str; 6] = [
     "pipeline",
 ];
 
+/// A new state with half of the expression: all of it would be the source itself.
+pub fn new_state() -> State {
+    let mut state = State::new();
+    state.modulation.amount = 0.5;
+    state
+}
+
 /// A small generator: the same numbers everywhere.
 #[derive(Clone, Copy, Debug)]
 pub struct Random(pub u64);
