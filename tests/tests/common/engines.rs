@@ -1,5 +1,5 @@
 //! Every engine behind the limiter, on the made gait's skeleton: packs that are seeded, not trained.
-#![allow(dead_code, missing_docs, reason = "each test file uses a part")]
+#![allow(dead_code, missing_docs, clippy::needless_range_loop, reason = "each test file uses a part")]
 
 use std::path::Path;
 

@@ -1,5 +1,5 @@
 //! Limits of all four kinds on the made gait's skeleton, and the check that they are kept.
-#![allow(dead_code, missing_docs, reason = "each test file uses a part")]
+#![allow(dead_code, missing_docs, clippy::needless_range_loop, reason = "each test file uses a part")]
 
 use kinesic::Pose;
 use kinesic::limit::{JointKind, LimitState, Limiter};
