@@ -145,11 +145,11 @@ impl<'a, const JOINTS: usize> Limiter<'a, JOINTS> {
         let (root_speed, root_change) =
             (meta.root_velocity * frame_time, meta.root_acceleration * (frame_time * frame_time));
         let times = [meta.hold, meta.decay, meta.frozen];
-        if joints == 0
-            || !(1.0..1e4).contains(&frame_rate)
-            || !(STEPS.contains(&root_speed) && STEPS.contains(&root_change))
-            || !times.iter().all(|time| (0.0..1e5).contains(time))
-        {
+        let sound = (1.0..1e4).contains(&frame_rate)
+            && STEPS.contains(&root_speed)
+            && STEPS.contains(&root_change)
+            && times.iter().all(|time| (0.0..1e5).contains(time));
+        if joints == 0 || !sound {
             return Err(LoadError::Metadata);
         }
         let frames = |time: f32| (time * frame_rate + 0.5) as u32;
