@@ -23,3 +23,4 @@ pub mod retarget;
 pub mod rig;
 pub mod translate;
 mod vector;
+pub mod view;
