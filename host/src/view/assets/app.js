@@ -173,7 +173,7 @@ function play(on) {
   kinesic.playing = on;
   $("play").setAttribute("aria-pressed", on);
   $("play").setAttribute("aria-label", on ? "Pause" : "Play");
-  $("play").textContent = on ? "\u23F8\uFE0E" : "\u25B6\uFE0E";
+  $("play").textContent = on ? "Pause" : "Play";
 }
 
 // The joint of a figure's skeleton that is called as the chosen one, or plays its part.

@@ -1,6 +1,6 @@
 // Skeletons in space on a plain canvas: a camera that turns about a point, lines and discs.
 
-const UPRIGHT = { yaw: 0.6, pitch: 0.22, distance: 5.2 };
+const UPRIGHT = { yaw: 0.35, pitch: 0.2, distance: 5.2 };
 
 class Scene {
   constructor(canvas) {
