@@ -292,7 +292,7 @@ fn a_damaged_pack_is_named_on_the_page() {
     let letter = if &html[at..=at] == "A" { "B" } else { "A" };
     std::fs::write(&path, format!("{}{letter}{}", &html[..at], &html[at + 1..])).unwrap();
     let mut browser = Browser::open(&path, [800, 600], false).unwrap();
-    browser.wait("!document.getElementById('alert').hidden").unwrap();
+    browser.wait("document.getElementById('alert')?.hidden === false").unwrap();
     let text = browser.value("document.getElementById('alert').textContent").unwrap();
     assert!(text.as_str().unwrap().contains("weary: the file is damaged"), "{text}");
 }

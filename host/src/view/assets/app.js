@@ -38,7 +38,7 @@ function slider({ id, label, min, max, step, value, change }) {
     output.textContent = Number(input.value).toFixed(2);
     change(Number(input.value));
   });
-  return element("label", { className: "slider" }, element("span", { textContent: label }), output, input);
+  return element("label", { className: "slider", htmlFor: id }, element("span", { textContent: label }), output, input);
 }
 
 // The controls of a pack.

@@ -66,7 +66,7 @@ class Scene {
     const [width, height] = fit(this.canvas);
     const { yaw, pitch, distance } = this.camera;
     const [sy, cy, sp, cp] = [Math.sin(yaw), Math.cos(yaw), Math.sin(pitch), Math.cos(pitch)];
-    const focal = 1.6 * Math.min(height, width);
+    const focal = Math.min(1.6 * height, width);
     return (x, y, z) => {
       const [dx, dy, dz] = [x - this.target[0], y - this.target[1], z - this.target[2]];
       const right = cy * dx - sy * dz;
