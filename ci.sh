@@ -12,6 +12,7 @@ usage: ./ci.sh [COMMAND]
   unit      all tests of the workspace, on the real clips where they are (KINESIC_DATA, default ../shared/data)
   firmware  images for every target, run in the emulator, against the budgets
 
+  wasm      makes host/src/view/assets/kinesic.wasm from wasm/ and core/
   header    makes c/include/kinesic.h from c/src
   bench-peers  training jobs beside the Python packages used today (installed into target/peers): docs/training-speed.md
   fuzz [SECONDS]
@@ -29,7 +30,7 @@ need() {
 lint() {
     cargo fmt --all --check
     # Crates for microcontrollers are workspaces of their own.
-    for crate in c docs/board firmware-sim/image firmware-sim/plugin fuzz tests/no-std-link; do
+    for crate in c docs/board firmware-sim/image firmware-sim/plugin fuzz tests/no-std-link wasm; do
         cargo fmt --manifest-path "$crate/Cargo.toml" --check
     done
     cargo clippy --release --workspace --all-targets --locked -- -D warnings
@@ -64,6 +65,11 @@ firmware() {
         sed 's/^/  /' "$folder/skipped"
     fi
     rm -r "$folder"
+}
+
+wasm() {
+    firmware-sim/setup.sh
+    KINESIC_WASM=write cargo test --release --locked -p kinesic-firmware-sim --test page the_core_in_the_page -- --ignored
 }
 
 header() {
@@ -135,7 +141,7 @@ test)
     firmware
     ;;
 bench-peers) bench_peers ;;
-lint | unit | firmware | header | deny) "$1" ;;
+lint | unit | firmware | wasm | header | deny) "$1" ;;
 fuzz) fuzz "${2:-60}" ;;
 -h | --help) usage ;;
 *)

@@ -9,8 +9,11 @@ command -v qemu-system-riscv32 >/dev/null || wanted+=(qemu-system-misc)
 # For the example of the C interface.
 command -v arm-none-eabi-gcc >/dev/null || wanted+=(gcc-arm-none-eabi)
 
+# For the page of `kinesic view`.
+command -v chromium >/dev/null || wanted+=(chromium)
+
 # A compiler for the targets: all rustup targets, or any compiler with its library's sources.
-triples=(thumbv6m-none-eabi thumbv7em-none-eabihf thumbv8m.main-none-eabihf riscv32imc-unknown-none-elf)
+triples=(thumbv6m-none-eabi thumbv7em-none-eabihf thumbv8m.main-none-eabihf riscv32imc-unknown-none-elf wasm32-unknown-unknown)
 ready=false
 for rustc in rustc /usr/bin/rustc; do
     root=$("$rustc" --print sysroot 2>/dev/null) || continue

@@ -137,6 +137,18 @@ pub fn c_library(folders: &Folders, name: &str, target: &Target, toolchain: &Too
     Ok(built.join("libkinesic_c.a"))
 }
 
+/// Builds the core for browsers (`wasm/`), and returns the module.
+pub fn wasm(folders: &Folders, toolchain: &Toolchain) -> Result<PathBuf, BuildError> {
+    let (what, project, folder) = ("the core for browsers".to_owned(), home().join("../wasm"), folders.target("wasm"));
+    let flags = vec![format!("-Clinker={}", toolchain.linker.display()), "-Clinker-flavor=wasm-ld".to_owned()];
+    let built = BareMetal { what, project, folder, triple: WASM, flags, binaries: &[], settings: Vec::new() }
+        .build(toolchain)?;
+    Ok(built.join("kinesic_wasm.wasm"))
+}
+
+/// Target of the core for browsers.
+pub const WASM: &str = "wasm32-unknown-unknown";
+
 /// Binaries, or the library, of a crate without an operating system.
 struct BareMetal<'a> {
     what: String,

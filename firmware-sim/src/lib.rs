@@ -13,8 +13,10 @@
 //! | [`profile`] | what the plugin counted |
 //! | [`isa`], [`price`] | instructions to modelled cycles |
 //! | [`check`], [`report`] | measured against allowed; the table and the JSON |
+//! | [`browser`] | runs a page in headless Chromium |
 //! | [`same`] | host against targets on recorded clips |
 
+pub mod browser;
 pub mod build;
 pub mod check;
 pub mod data;

@@ -24,3 +24,4 @@ pub mod retarget;
 pub mod rig;
 pub mod translate;
 mod vector;
+pub mod view;

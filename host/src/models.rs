@@ -7,6 +7,11 @@ pub fn mechanics() -> PackFile {
     PackFile::from_bytes(include_bytes!("../../models/mechanics.kin"))
 }
 
+/// A style of walking, from the program's own gait: `models/weary.kin`.
+pub fn weary() -> PackFile {
+    PackFile::from_bytes(include_bytes!("../../models/weary.kin"))
+}
+
 #[cfg(test)]
 mod tests {
     #[test]
@@ -14,5 +19,8 @@ mod tests {
         let file = super::mechanics();
         let pack = file.pack().unwrap();
         assert!(pack.metadata().models.iter().any(|model| model.mechanics().is_some()));
+        let file = super::weary();
+        let pack = file.pack().unwrap();
+        assert!(pack.metadata().models.iter().any(|model| model.translator().is_some()));
     }
 }

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Every workspace of the repository.
-const WORKSPACES: [&str; 7] =
-    ["", "c", "docs/board", "firmware-sim/image", "firmware-sim/plugin", "fuzz", "tests/no-std-link"];
+const WORKSPACES: [&str; 8] =
+    ["", "c", "docs/board", "firmware-sim/image", "firmware-sim/plugin", "fuzz", "tests/no-std-link", "wasm"];
 
 fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")

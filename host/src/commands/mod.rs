@@ -19,6 +19,7 @@ mod mix;
 mod modulate;
 mod output;
 mod train;
+mod view;
 
 use clap::{Parser, Subcommand};
 
@@ -53,6 +54,7 @@ enum Command {
     Modulate(modulate::Args),
     Mix(mix::Args),
     Blend(blend::Args),
+    View(view::Args),
     Export(export::Args),
     Completions(completions::Args),
     Face(face::Args),
@@ -70,6 +72,7 @@ pub fn run(cli: Cli) -> miette::Result<()> {
         Command::Modulate(args) => modulate::run(&args),
         Command::Mix(args) => mix::run(&args),
         Command::Blend(args) => blend::run(&args),
+        Command::View(args) => view::run(&args),
         Command::Export(args) => export::run(&args),
         Command::Completions(args) => completions::run(&args),
         Command::Face(args) => face::run(&args),

@@ -1,0 +1,301 @@
+//! The page of `kinesic view` as a person meets it, in headless Chromium.
+//!
+//! `KINESIC_SHOTS=FOLDER` keeps the pictures that are taken on the way.
+
+use std::path::{Path, PathBuf};
+
+use kinesic_firmware_sim::browser::Browser;
+use kinesic_firmware_sim::build::{self, Folders};
+use kinesic_firmware_sim::toolchain;
+use kinesic_host::clip::JointMap;
+use kinesic_host::gait::{Manner, walk};
+use kinesic_host::models;
+use kinesic_host::prepare::Source;
+use kinesic_host::view::{self, ViewClip, ViewPack};
+use serde_json::Value;
+
+/// The core of the page, built again. `KINESIC_WASM=write` keeps it: `./ci.sh wasm`.
+fn rebuilt() -> (Vec<u8>, String) {
+    let toolchain = toolchain::find(build::WASM).unwrap();
+    let module = build::wasm(&Folders::new(), &toolchain).unwrap();
+    (std::fs::read(module).unwrap(), toolchain.version)
+}
+
+fn source(manner: &Manner, phase: f64, seed: u64) -> Source {
+    let clip = walk(manner, 6.0, 60.0, phase, seed);
+    let map = JointMap::detect(&clip.skeleton).unwrap();
+    Source { path: "made".into(), clip, map }
+}
+
+/// Two engines, two clips, a target: four figures.
+fn page(folder: &Path, wasm: &[u8]) -> PathBuf {
+    let packs = [("weary", models::weary()), ("mechanics", models::mechanics())]
+        .map(|(name, file)| ViewPack { name: name.to_owned(), file });
+    let target = Some(source(&Manner::WEARY, 0.3, 4));
+    let clips =
+        [("a walk", source(&Manner::NEUTRAL, 0.3, 3), target), ("a weary walk", source(&Manner::WEARY, 0.0, 2), None)]
+            .map(|(name, source, target)| ViewClip { name: name.to_owned(), source, target });
+    let html = view::page("kinesic", "made by a test", &packs, &clips, wasm).unwrap();
+    // From disk, without a network.
+    assert!(!html.contains("http:") && !html.contains("https:") && !html.contains("src="));
+    let path = folder.join("page.html");
+    std::fs::write(&path, html).unwrap();
+    path
+}
+
+fn shot(browser: &mut Browser, name: &str) {
+    let picture = browser.screenshot().unwrap();
+    assert!(picture.len() > 10_000);
+    if let Some(folder) = std::env::var_os("KINESIC_SHOTS") {
+        std::fs::write(PathBuf::from(folder).join(name), picture).unwrap();
+    }
+}
+
+fn state(browser: &mut Browser) -> Value {
+    browser.value("kinesic.state()").unwrap()
+}
+
+/// Sets a slider or a list as a person does, and waits until the results are made again.
+fn set(browser: &mut Browser, id: &str, value: &str, event: &str) {
+    let script = format!(
+        "(() => {{ const e = document.getElementById({id:?}); e.value = {value:?}; e.dispatchEvent(new Event({event:?}, {{bubbles: true}})); }})()"
+    );
+    browser.value(&script).unwrap();
+    settle(browser);
+}
+
+fn settle(browser: &mut Browser) {
+    browser.wait("kinesic.results.every((r) => !r || r.done === r.frames && !r.changed)").unwrap();
+}
+
+fn pose(state: &Value, figure: usize) -> Vec<f64> {
+    state["figures"][figure]["pose"].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
+}
+
+/// Largest difference of a number of two poses.
+fn apart(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+#[test]
+#[ignore = "needs a compiler for WebAssembly: firmware-sim/setup.sh"]
+fn the_core_in_the_page_is_that_of_the_repository() {
+    let (built, version) = rebuilt();
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../host/src/view/assets");
+    let (path, note) = (folder.join("kinesic.wasm"), folder.join("kinesic.wasm.txt"));
+    if std::env::var("KINESIC_WASM").as_deref() == Ok("write") {
+        std::fs::write(&path, &built).unwrap();
+        std::fs::write(&note, format!("{version}\n")).unwrap();
+    }
+    let by = std::fs::read_to_string(note).unwrap();
+    if by.trim() == version {
+        assert!(
+            std::fs::read(&path).unwrap() == built,
+            "{} is not what wasm/ and core/ say: run ./ci.sh wasm",
+            path.display()
+        );
+    } else {
+        // Another compiler makes other bytes; that they compute the same is the other test's.
+        println!(
+            "kinesic.wasm was made by {}, here is {version}: bytes are not compared, what they compute is",
+            by.trim()
+        );
+    }
+}
+
+#[test]
+#[ignore = "needs chromium and a compiler for WebAssembly: firmware-sim/setup.sh"]
+fn a_core_that_was_just_built_computes_the_bits_of_the_host() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = page(folder.path(), &rebuilt().0);
+    let mut browser = Browser::open(&path, [800, 600], false).unwrap();
+    browser.wait("typeof kinesic === 'object' && kinesic.compared").unwrap();
+    same_bits(&state(&mut browser));
+}
+
+fn same_bits(state: &Value) {
+    let bits = state["bits"].as_array().unwrap();
+    assert_eq!(bits.len(), 4, "two packs on two clips");
+    for each in bits {
+        assert_eq!(each["frames"], 300);
+        assert_eq!(each["here"], each["host"], "{each}");
+    }
+}
+
+#[test]
+#[ignore = "needs chromium: firmware-sim/setup.sh"]
+fn every_control_changes_what_it_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = page(folder.path(), view::WASM);
+    let mut at = Browser::open(&path, [1400, 1000], false).unwrap();
+    at.wait("typeof kinesic === 'object' && kinesic.compared").unwrap();
+    let first = state(&mut at);
+    same_bits(&first);
+    assert_eq!(first["figures"].as_array().unwrap().len(), 4);
+    // It plays by itself, and pauses and plays by key and button.
+    assert_eq!(first["playing"], true);
+    at.wait("kinesic.time > 0.2").unwrap();
+    at.key(" ").unwrap();
+    assert_eq!(state(&mut at)["playing"], false);
+    at.click("play").unwrap();
+    assert_eq!(state(&mut at)["playing"], true);
+    at.wait("kinesic.drawn > 150").unwrap();
+    shot(&mut at, "desktop.png");
+    at.click("play").unwrap();
+    let cost = state(&mut at)["cost"].clone();
+    println!("{} bytes; a picture of four skeletons takes {cost} ms", std::fs::metadata(&path).unwrap().len());
+    // Time: scrub, step, start, a click in a plot; speed.
+    set(&mut at, "time", "100", "input");
+    assert_eq!(state(&mut at)["frame"], 100);
+    at.key("ArrowRight").unwrap();
+    at.click("next").unwrap();
+    at.key("ArrowLeft").unwrap();
+    assert_eq!(state(&mut at)["frame"], 101);
+    at.click("start").unwrap();
+    assert_eq!(state(&mut at)["frame"], 0);
+    let middle = at.point("angle", [0.5, 0.5]).unwrap();
+    at.mouse("mouseMoved", middle).unwrap();
+    at.mouse("mousePressed", middle).unwrap();
+    at.mouse("mouseReleased", middle).unwrap();
+    let half = state(&mut at);
+    assert!((half["time"].as_f64().unwrap() / half["duration"].as_f64().unwrap() - 0.5).abs() < 0.01);
+    at.value("document.getElementById('speed').value = '0.1'").unwrap();
+    let walked = |at: &mut Browser| {
+        at.value("(async () => { const t = kinesic.time, n = performance.now(); document.getElementById('play').click(); await new Promise((r) => setTimeout(r, 700)); document.getElementById('play').click(); return (kinesic.time - t) * 1000 / (performance.now() - n); })()").unwrap().as_f64().unwrap()
+    };
+    let slow = walked(&mut at);
+    at.value("document.getElementById('speed').value = '1'").unwrap();
+    let full = walked(&mut at);
+    assert!(slow > 0.03 && slow < 0.2 && full > 0.4 && full < 1.2, "{slow} and {full} s a second");
+    // Strength: 0 is the source, 1 is not; beyond the plausible range it says so.
+    set(&mut at, "time", "120", "input");
+    let learned = state(&mut at);
+    assert!(apart(&pose(&learned, 0), &pose(&learned, 1)) > 0.05);
+    set(&mut at, "strength-0", "0", "input");
+    let none = state(&mut at);
+    assert_eq!(none["results"][0]["strength"], 0.0);
+    assert!(apart(&pose(&none, 0), &pose(&none, 1)) < 1e-3);
+    set(&mut at, "strength-0", "2.5", "input");
+    assert!(at.value("document.body.textContent.includes('outside the plausible range')").unwrap() == true);
+    set(&mut at, "strength-0", "1", "input");
+    assert_eq!(pose(&state(&mut at), 1), pose(&learned, 1), "the same controls, the same bits");
+    // Expressiveness: 1 is the source to the bit, of the weary walk 0 is not.
+    set(&mut at, "clip", "1", "change");
+    set(&mut at, "time", "120", "input");
+    let weary = state(&mut at);
+    assert_eq!(weary["figures"].as_array().unwrap().len(), 3, "this clip has no target");
+    set(&mut at, "strength-1", "0", "input");
+    let plain = state(&mut at);
+    assert!(apart(&pose(&plain, 2), &pose(&weary, 2)) > 0.05);
+    // ... and that of another clip.
+    set(&mut at, "strength-1", "1", "input");
+    set(&mut at, "other-1", "0", "change");
+    let mixed = state(&mut at);
+    assert_eq!(mixed["results"][1]["mixed"], true);
+    assert!(apart(&pose(&mixed, 2), &pose(&weary, 2)) > 0.05);
+    set(&mut at, "other-1", "", "change");
+    assert_eq!(pose(&state(&mut at), 2), pose(&weary, 2));
+    // Joints: without them all there is no style; with the legs only, the arms are the source's.
+    set(&mut at, "clip", "0", "change");
+    set(&mut at, "time", "120", "input");
+    at.value("document.querySelectorAll('details').forEach((d) => (d.open = true))").unwrap();
+    for (button, lowest, highest) in [("none-0", 0.0, 1e-3), ("legs-0", 0.001, 2.0), ("all-0", 0.05, 2.0)] {
+        at.click(button).unwrap();
+        settle(&mut at);
+        let now = state(&mut at);
+        let difference = apart(&pose(&now, 0), &pose(&now, 1));
+        assert!(difference >= lowest && difference <= highest, "{button}: {difference}");
+        if button == "legs-0" {
+            // Joint 14 is the left elbow.
+            let elbow = 3 + 4 * 14;
+            assert!(apart(&pose(&now, 0)[elbow..elbow + 4], &pose(&now, 1)[elbow..elbow + 4]) < 1e-4);
+        }
+    }
+    set(&mut at, "mask-0-11", "0.25", "input");
+    assert_eq!(state(&mut at)["controls"][0]["mask"][11], 0.25);
+    // Which packs are shown; which joint is plotted; feet.
+    at.click("shown-1").unwrap();
+    assert_eq!(state(&mut at)["figures"].as_array().unwrap().len(), 3);
+    at.click("shown-1").unwrap();
+    let before = at.value("document.getElementById('angles').textContent").unwrap();
+    set(&mut at, "joint", "2", "change");
+    at.wait("kinesic.stale === false").unwrap();
+    assert_ne!(at.value("document.getElementById('angles').textContent").unwrap(), before);
+    let contacts = state(&mut at)["figures"][0]["contacts"][0].as_str().unwrap().to_owned();
+    let share = contacts.matches('1').count() as f64 / contacts.len() as f64;
+    assert!(share > 0.1 && share < 0.9, "a walking foot stands part of the time: {share}");
+    // The camera: drag, wheel, keys, reset; follow.
+    at.value("scrollTo(0, 0)").unwrap();
+    let from = at.point("scene", [0.5, 0.5]).unwrap();
+    at.mouse("mousePressed", from).unwrap();
+    at.mouse("mouseMoved", [from[0] + 100.0, from[1] + 40.0]).unwrap();
+    at.mouse("mouseReleased", [from[0] + 100.0, from[1] + 40.0]).unwrap();
+    let turned = state(&mut at)["camera"].clone();
+    assert!(turned["yaw"] != first["camera"]["yaw"] && turned["pitch"] != first["camera"]["pitch"]);
+    at.mouse("mouseWheel", from).unwrap();
+    at.wait(&format!("kinesic.scene.camera.distance > {}", turned["distance"])).unwrap();
+    at.value("document.getElementById('scene').focus()").unwrap();
+    let yaw = state(&mut at)["camera"]["yaw"].clone();
+    at.key("ArrowLeft").unwrap();
+    assert_ne!(state(&mut at)["camera"]["yaw"], yaw);
+    at.key("0").unwrap();
+    assert_eq!(state(&mut at)["camera"], first["camera"]);
+    at.click("follow").unwrap();
+    let target = state(&mut at)["target"].clone();
+    set(&mut at, "time", "300", "input");
+    let drawn = state(&mut at)["drawn"].clone();
+    at.wait(&format!("kinesic.drawn > {drawn}")).unwrap();
+    assert_eq!(state(&mut at)["target"], target);
+    // Everything that can be turned has a name.
+    let nameless = at.value("[...document.querySelectorAll('button, input, select, canvas')].filter((e) => !(e.getAttribute('aria-label') || e.labels?.length || e.textContent.trim())).map((e) => e.id)").unwrap();
+    assert_eq!(nameless.as_array().unwrap().len(), 0, "{nameless}");
+    assert!(at.errors.is_empty() && state(&mut at)["errors"] == serde_json::json!([]), "{:?}", at.errors);
+}
+
+#[test]
+#[ignore = "needs chromium: firmware-sim/setup.sh"]
+fn it_fits_a_phone_dark_and_touched() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = page(folder.path(), view::WASM);
+    let mut at = Browser::open(&path, [390, 844], true).unwrap();
+    let dark = serde_json::json!({"features": [{"name": "prefers-color-scheme", "value": "dark"}]});
+    at.call("Emulation.setEmulatedMedia", dark).unwrap();
+    at.wait("typeof kinesic === 'object' && kinesic.compared && kinesic.drawn > 60").unwrap();
+    shot(&mut at, "phone.png");
+    let [wide, window] =
+        ["document.documentElement.scrollWidth", "innerWidth"].map(|e| at.value(e).unwrap().as_f64().unwrap());
+    assert!(wide <= window, "the page is {wide} wide in a window of {window}");
+    let before = state(&mut at)["camera"].clone();
+    let [x, y] = at.point("scene", [0.5, 0.5]).unwrap();
+    at.touch("touchStart", &[[x - 40.0, y], [x + 40.0, y]]).unwrap();
+    at.touch("touchMove", &[[x - 90.0, y], [x + 90.0, y]]).unwrap();
+    at.touch("touchEnd", &[]).unwrap();
+    let pinched = state(&mut at)["camera"].clone();
+    assert!(pinched["distance"].as_f64().unwrap() < before["distance"].as_f64().unwrap());
+    at.touch("touchStart", &[[x, y]]).unwrap();
+    at.touch("touchMove", &[[x + 60.0, y]]).unwrap();
+    at.touch("touchEnd", &[]).unwrap();
+    assert_ne!(state(&mut at)["camera"]["yaw"], pinched["yaw"]);
+    at.value("document.querySelector('.controls').scrollIntoView()").unwrap();
+    shot(&mut at, "phone-controls.png");
+    assert!(at.errors.is_empty(), "{:?}", at.errors);
+}
+
+#[test]
+#[ignore = "needs chromium: firmware-sim/setup.sh"]
+fn a_damaged_pack_is_named_on_the_page() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = page(folder.path(), view::WASM);
+    let html = std::fs::read_to_string(&path).unwrap();
+    // Another letter in the middle of the first pack's bytes.
+    let at = html.find("\"bytes\":\"").unwrap() + 20_000;
+    let letter = if &html[at..=at] == "A" { "B" } else { "A" };
+    std::fs::write(&path, format!("{}{letter}{}", &html[..at], &html[at + 1..])).unwrap();
+    let mut browser = Browser::open(&path, [800, 600], false).unwrap();
+    browser.wait("document.getElementById('alert')?.hidden === false").unwrap();
+    let text = browser.value("document.getElementById('alert').textContent").unwrap();
+    assert!(
+        ["weary: checksum", "the file is damaged"].iter().all(|part| text.as_str().unwrap().contains(part)),
+        "{text}"
+    );
+}

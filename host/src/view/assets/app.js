@@ -1,0 +1,315 @@
+// The page: what is shown, what is turned, and what a test reads back (`kinesic.state()`).
+
+const $ = (id) => document.getElementById(id);
+const SLOT = 1.3; // metres between figures
+
+const kinesic = {
+  data: JSON.parse($("data").textContent),
+  cores: [], controls: [], figures: [], results: [],
+  clip: 0, time: 0, duration: 1, playing: false, joint: 0,
+  frames: 0, drawn: 0, cost: { picture: 0, step: 0 }, bits: [], errors: [],
+};
+
+function refuse(error) {
+  kinesic.errors.push(String(error?.message ?? error));
+  $("alert").hidden = false;
+  $("alert").textContent = kinesic.errors.join("; ");
+}
+addEventListener("error", (event) => refuse(event.error ?? event.message));
+addEventListener("unhandledrejection", (event) => refuse(event.reason));
+
+const colours = () => {
+  const style = getComputedStyle(document.documentElement);
+  return new Proxy({}, { get: (_, name) => style.getPropertyValue(`--${name}`).trim() });
+};
+
+function element(tag, properties, ...children) {
+  const made = Object.assign(document.createElement(tag), properties);
+  made.append(...children);
+  return made;
+}
+
+// A labelled slider that shows its value.
+function slider({ id, label, min, max, step, value, change }) {
+  const output = element("output", { textContent: Number(value).toFixed(2) });
+  output.htmlFor = id;
+  const input = element("input", { id, type: "range", min, max, step, value });
+  input.addEventListener("input", () => {
+    output.textContent = Number(input.value).toFixed(2);
+    change(Number(input.value));
+  });
+  return element("label", { className: "slider", htmlFor: id }, element("span", { textContent: label }), output, input);
+}
+
+// The controls of a pack.
+function panel(pack, index) {
+  const state = kinesic.controls[index];
+  const { label, help } = CONTROLS[pack.engine];
+  const [low, high] = pack.plausible;
+  const warning = element("span", { className: "warn small" });
+  const changed = () => {
+    const outside = state.strength < low || state.strength > high;
+    warning.textContent = outside ? `outside the plausible range of this pack, ${low.toFixed(2)} to ${high.toFixed(2)}` : "";
+    kinesic.results[index]?.change();
+    kinesic.stale = true;
+  };
+  const set = element("fieldset", {}, element("legend", { textContent: pack.name }));
+  const shown = element("input", { type: "checkbox", id: `shown-${index}`, checked: true });
+  shown.addEventListener("change", () => { state.shown = shown.checked; show(); });
+  set.append(element("p", { className: "soft small", textContent: `${pack.engine}, ${pack.joints.length} joints, ${pack.rate} frames a second, ${pack.size} bytes` }));
+  set.append(element("label", {}, shown, " shown"));
+  set.append(slider({ id: `strength-${index}`, label: `${label} (${help})`, min: -0.5, max: 2.5, step: 0.05, value: state.strength,
+    change: (value) => { state.strength = value; changed(); } }), warning);
+  if (pack.engine === "mechanics" && kinesic.data.clips.length > 1) set.append(mixing(index, changed));
+  set.append(mask(pack, index, changed));
+  return set;
+}
+
+// Expression from another clip.
+function mixing(index, changed) {
+  const options = kinesic.data.clips.map((clip, k) => element("option", { value: k, textContent: clip.name }));
+  const select = element("select", { id: `other-${index}` }, element("option", { value: "", textContent: "this clip" }), ...options);
+  select.addEventListener("change", () => {
+    kinesic.controls[index].other = select.value === "" ? null : Number(select.value);
+    mixed(index);
+    changed();
+  });
+  return element("label", { className: "row" }, "Expression of ", select);
+}
+
+function mixed(index) {
+  const { other } = kinesic.controls[index];
+  const result = kinesic.results[index];
+  if (result) result.other = other === null ? null : recorded(index, other).source;
+}
+
+// Weights of the joints.
+function mask(pack, index, changed) {
+  const weights = kinesic.controls[index].mask;
+  const sliders = pack.joints.map(({ name }, joint) =>
+    slider({ id: `mask-${index}-${joint}`, label: name, min: 0, max: 1, step: 0.05, value: 1, change: (value) => { weights[joint] = value; changed(); } }));
+  const all = (choose) => () => {
+    sliders.forEach((made, joint) => {
+      const input = made.querySelector("input");
+      const value = choose(joint);
+      if (value === null || Number(input.value) === value) return;
+      input.value = value;
+      input.dispatchEvent(new Event("input"));
+    });
+  };
+  const button = (id, text, choose) => {
+    const made = element("button", { id: `${id}-${index}`, type: "button", textContent: text });
+    made.addEventListener("click", all(choose));
+    return made;
+  };
+  const legs = new Set(pack.legs);
+  return element("details", {}, element("summary", { textContent: "Joints" }),
+    element("div", { className: "buttons" }, button("all", "all", () => 1), button("none", "none", () => 0),
+      button("upper", "upper body", (joint) => (legs.has(joint) ? 0 : 1)), button("legs", "legs", (joint) => (legs.has(joint) ? 1 : 0))),
+    element("div", { className: "mask" }, ...sliders));
+}
+
+// Recorded tracks of a pack and a clip, read once.
+const tracks = new Map();
+function recorded(index, clip) {
+  const key = `${index}/${clip}`;
+  if (!tracks.has(key)) {
+    const scene = kinesic.data.scenes[index][clip];
+    const track = (text) => text && Track.recorded(kinesic.cores[index], kinesic.data.packs[index], floats(text));
+    tracks.set(key, { source: track(scene.source), target: track(scene.target) });
+  }
+  return tracks.get(key);
+}
+
+// Which figures there are: the source, one result a pack, the target.
+function show() {
+  const { data, controls, clip } = kinesic;
+  const shown = data.packs.map((_, index) => index).filter((index) => controls[index].shown);
+  const first = shown[0] ?? 0;
+  const figures = [{ track: recorded(first, clip).source, name: "source", role: "source" }];
+  kinesic.results = data.packs.map((pack, index) => {
+    if (!controls[index].shown) return null;
+    const { source } = recorded(index, clip);
+    return new Result(kinesic.cores[index], pack, source, controls[index]);
+  });
+  for (const index of shown) {
+    mixed(index);
+    if (kinesic.results[index].other) kinesic.results[index].begin();
+    figures.push({ track: kinesic.results[index], name: data.packs[index].name, role: "result" });
+  }
+  const { target } = recorded(first, clip);
+  if (target) figures.push({ track: target, name: "target", role: "target" });
+  const placed = figures.map((figure, k) => {
+    const [x, , z] = (figure.track.source ?? figure.track).place(0);
+    return { ...figure, index: k, shift: [(k - (figures.length - 1) / 2) * SLOT - x, -z] };
+  });
+  kinesic.figures = placed;
+  const { source } = recorded(first, clip);
+  kinesic.duration = Math.max(1e-3, (source.frames - 1) / source.rate);
+  kinesic.frames = source.frames;
+  $("time").max = source.frames - 1;
+  seek(Math.min(kinesic.time, kinesic.duration));
+  $("legend").replaceChildren(...placed.map((figure) =>
+    element("li", {}, element("i", { style: `background: var(--c${figure.index % 6})` }), figure.name + (figure.role === "result" ? " (result)" : ""))));
+  const names = figures[0].track.pack.joints.map(({ name }) => name);
+  const chosen = $("joint").selectedOptions[0]?.textContent ?? data.joint;
+  $("joint").replaceChildren(...names.map((name, joint) => element("option", { value: joint, textContent: name })));
+  $("joint").value = Math.max(0, names.indexOf(chosen));
+  kinesic.joint = Number($("joint").value);
+  $("scene").setAttribute("aria-label", `Skeletons side by side: ${placed.map(({ name }) => name).join(", ")}`);
+  kinesic.stale = true;
+}
+
+function seek(seconds) {
+  kinesic.time = Math.max(0, Math.min(kinesic.duration, seconds));
+  const rate = (kinesic.frames - 1) / kinesic.duration;
+  $("time").value = Math.round(kinesic.time * rate);
+  $("clock").textContent = `${kinesic.time.toFixed(2)} / ${kinesic.duration.toFixed(2)} s`;
+  $("time").setAttribute("aria-valuetext", `${kinesic.time.toFixed(2)} seconds`);
+}
+
+function play(on) {
+  if (on && kinesic.time >= kinesic.duration) seek(0);
+  kinesic.playing = on;
+  $("play").setAttribute("aria-pressed", on);
+  $("play").setAttribute("aria-label", on ? "Pause" : "Play");
+  $("play").textContent = on ? "Pause" : "Play";
+}
+
+// The joint of a figure's skeleton that is called as the chosen one, or plays its part.
+function joint(figure) {
+  const [from, to] = [kinesic.figures[0].track.pack, figure.track.pack];
+  if (from === to) return kinesic.joint;
+  const part = from.joints[kinesic.joint].part;
+  const same = to.joints.findIndex((other) => (part ? other.part === part : other.name === from.joints[kinesic.joint].name));
+  return Math.max(0, same);
+}
+
+function plots() {
+  const palette = colours();
+  const figures = kinesic.figures.map((figure) => {
+    const { track } = figure;
+    // A result's curve changes while it is made again; feet are found once a pass.
+    if (!figure.contacts || figure.pass !== track.passes) {
+      figure.contacts = track.pack.feet.map((foot) => track.contacts(foot));
+      figure.pass = track.passes;
+    }
+    return { ...figure, colour: palette[`c${figure.index % 6}`], joint: joint(figure) };
+  });
+  const { time, duration, plot } = kinesic;
+  const of = new Map(figures.map((figure) => [figure.track, figure.joint]));
+  plot.angle.curves(figures, (track, frame) => track.angle(frame, of.get(track)), time, duration, palette);
+  plot.speed.curves(figures, (track, frame) => track.speed(frame, of.get(track)), time, duration, palette);
+  plot.feet.rows(figures, time, duration, palette);
+}
+
+function picture() {
+  const palette = colours();
+  const centre = [0, 0];
+  const drawn = kinesic.figures.map((figure) => {
+    const { track } = figure;
+    const frame = track.frame(kinesic.time);
+    const [x, , z] = track.place(frame);
+    centre[0] += (x + figure.shift[0]) / kinesic.figures.length;
+    centre[1] += (z + figure.shift[1]) / kinesic.figures.length;
+    const stands = track.pack.feet.filter((_, foot) => figure.contacts?.[foot][frame]);
+    return { ...figure, frame, stands, colour: palette[`c${figure.index % 6}`] };
+  });
+  if ($("follow").checked) [kinesic.scene.target[0], kinesic.scene.target[2]] = centre;
+  kinesic.scene.draw(drawn, palette);
+}
+
+// One picture of the screen: step what is to be stepped, draw.
+let last = null;
+function tick(now) {
+  const elapsed = last === null ? 0 : Math.min(0.1, (now - last) / 1000);
+  last = now;
+  if (kinesic.playing) {
+    const at = kinesic.time + elapsed * Number($("speed").value);
+    seek(at > kinesic.duration ? 0 : at);
+  }
+  const begin = performance.now();
+  let made = 0;
+  for (const result of kinesic.results) made += result ? result.advance(begin + 6) : 0;
+  const stepped = performance.now();
+  if (made) kinesic.cost.step += 0.1 * ((stepped - begin) / made - kinesic.cost.step);
+  picture();
+  // Plots every other picture: they cost more than the skeletons.
+  if (kinesic.drawn % 2 === 0 || kinesic.stale) plots();
+  kinesic.stale = false;
+  kinesic.cost.picture += 0.05 * (performance.now() - stepped - kinesic.cost.picture);
+  kinesic.drawn += 1;
+  if (kinesic.drawn % 30 === 0) $("cost").textContent = `A picture takes ${kinesic.cost.picture.toFixed(1)} ms, a step of the core ${(1000 * kinesic.cost.step).toFixed(0)} us.`;
+  requestAnimationFrame(tick);
+}
+
+// The host has stepped the same frames; a core of its own, so that the running ones keep their state.
+async function compare(module) {
+  const { data } = kinesic;
+  for (const [index, pack] of data.packs.entries()) {
+    const core = await Core.make(module, pack);
+    for (const scene of data.scenes[index]) {
+      const poses = floats(scene.source);
+      const source = new Track(pack, poses.length / (3 + 4 * pack.joints.length));
+      source.poses.set(poses);
+      kinesic.bits.push({ pack: pack.name, frames: Math.min(data.checked, source.frames), here: digest(core, source, data.strength, data.checked), host: scene.digest });
+      await new Promise((done) => setTimeout(done));
+    }
+  }
+  const same = kinesic.bits.every(({ here, host }) => here === host);
+  const frames = Math.max(0, ...kinesic.bits.map((each) => each.frames));
+  $("bits").textContent = same ? `Same output bits as the host over ${frames} frames of every clip and pack.` : "OUTPUT DIFFERS from the host's: see kinesic.bits in the console.";
+  kinesic.compared = true;
+}
+
+kinesic.state = () => ({
+  ready: Boolean(kinesic.ready), errors: kinesic.errors, playing: kinesic.playing, time: kinesic.time, duration: kinesic.duration,
+  frame: kinesic.figures[0]?.track.frame(kinesic.time), drawn: kinesic.drawn, clip: kinesic.clip, joint: kinesic.joint,
+  camera: { ...kinesic.scene.camera }, target: [...kinesic.scene.target], cost: { ...kinesic.cost }, bits: kinesic.bits, compared: Boolean(kinesic.compared),
+  figures: kinesic.figures.map(({ name, role, track, contacts }) => ({ name, role, frames: track.frames, pose: [...track.pose(track.frame(kinesic.time))],
+    contacts: contacts?.map((stands) => [...stands].join("")) })),
+  results: kinesic.results.map((result) => result && { strength: result.strength, passes: result.passes, done: result.done, frames: result.frames, changed: result.changed, mixed: Boolean(result.mixed) }),
+  controls: kinesic.controls.map((each) => ({ ...each, mask: [...each.mask] })),
+});
+
+async function begin() {
+  const { data } = kinesic;
+  const module = await WebAssembly.compile(bytes(data.wasm));
+  for (const pack of data.packs) {
+    pack.bones = pack.joints.flatMap(({ parent }, joint) => (parent === null ? [] : [[parent, joint]]));
+    kinesic.cores.push(await Core.make(module, pack));
+    kinesic.controls.push({ strength: 1, mask: pack.joints.map(() => 1), shown: true, other: null });
+  }
+  kinesic.scene = new Scene($("scene"));
+  kinesic.plot = { angle: new Plot($("angle"), $("angles"), 1), speed: new Plot($("velocity"), $("speeds"), 2), feet: new Plot($("contacts"), $("feet"), 0) };
+  for (const plot of Object.values(kinesic.plot)) plot.seek = (share) => seek(share * kinesic.duration);
+  $("clip").append(...data.clips.map(({ name }, k) => element("option", { value: k, textContent: name })));
+  $("clip").addEventListener("change", () => { kinesic.clip = Number($("clip").value); kinesic.time = 0; show(); });
+  $("packs").append(...data.packs.map(panel));
+  $("joint").addEventListener("change", () => { kinesic.joint = Number($("joint").value); kinesic.stale = true; });
+  const rate = () => (kinesic.frames - 1) / kinesic.duration;
+  const step = (frames) => { play(false); seek(Math.round(kinesic.time * rate() + frames) / rate()); };
+  $("time").addEventListener("input", () => seek(Number($("time").value) / rate()));
+  $("play").addEventListener("click", () => play(!kinesic.playing));
+  $("start").addEventListener("click", () => seek(0));
+  $("back").addEventListener("click", () => step(-1));
+  $("next").addEventListener("click", () => step(1));
+  $("view").addEventListener("click", () => kinesic.scene.reset());
+  addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const typing = event.target.closest?.("input[type=range], select");
+    if (event.key === " " && !event.target.closest?.("button, summary, select, input[type=checkbox]")) play(!kinesic.playing);
+    else if (event.key === "ArrowLeft" && !typing) step(-1);
+    else if (event.key === "ArrowRight" && !typing) step(1);
+    else if (event.key === "Home" && !typing) seek(0);
+    else return;
+    event.preventDefault();
+  });
+  show();
+  kinesic.ready = true;
+  requestAnimationFrame(tick);
+  if (!matchMedia("(prefers-reduced-motion: reduce)").matches) play(true);
+  await compare(module);
+}
+
+begin().catch(refuse);

@@ -1,0 +1,145 @@
+//! The page of `kinesic view`: one HTML file that plays packs on clips with the device's own code, compiled to WebAssembly.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `mod` | what is shown, and the file |
+//! | `scene` | a pack on a clip: poses as the page reads them, and the digest of what the host makes of them |
+//! | `assets/` | markup, style, scripts; `kinesic.wasm`, made of the crate `wasm/` by `./ci.sh wasm` |
+//!
+//! Everything is in the file: it opens from disk, without a network. The scripts share one scope, in this order: `engine.js` (the core,
+//! motions), `scene.js` (skeletons on a canvas), `plots.js` (curves), `app.js` (controls, time, what a test reads back).
+
+mod scene;
+
+use base64::Engine as _;
+use base64::prelude::BASE64_STANDARD;
+use kinesic::LoadError;
+use serde::Serialize;
+
+pub use scene::{CHECKED, STRENGTH, digest};
+
+use crate::pack::PackFile;
+use crate::prepare::{PrepareError, Source};
+use crate::rig::RigError;
+
+/// The core for browsers.
+pub const WASM: &[u8] = include_bytes!("assets/kinesic.wasm");
+
+const PAGE: &str = include_str!("assets/page.html");
+const STYLE: &str = include_str!("assets/style.css");
+const SCRIPTS: [&str; 4] = [
+    include_str!("assets/engine.js"),
+    include_str!("assets/scene.js"),
+    include_str!("assets/plots.js"),
+    include_str!("assets/app.js"),
+];
+
+/// A pack to show.
+#[derive(Clone, Debug)]
+pub struct ViewPack {
+    /// What it is called on the page.
+    pub name: String,
+    /// The pack.
+    pub file: PackFile,
+}
+
+/// A clip to show.
+#[derive(Clone, Debug)]
+pub struct ViewClip {
+    /// What it is called on the page.
+    pub name: String,
+    /// The motion that goes through the packs.
+    pub source: Source,
+    /// What it should become, if that is known.
+    pub target: Option<Source>,
+}
+
+/// Why there is no page.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ViewError {
+    /// No pack or no clip.
+    #[error("the page needs at least one pack and one clip, found {packs} and {clips}")]
+    Empty {
+        /// Packs given.
+        packs: usize,
+        /// Clips given.
+        clips: usize,
+    },
+    /// A pack is refused.
+    #[error("{name}: {error}")]
+    Pack {
+        /// The pack.
+        name: String,
+        /// Why.
+        error: LoadError,
+    },
+    /// A pack's skeleton is refused.
+    #[error("{name}: {error}")]
+    Rig {
+        /// The pack.
+        name: String,
+        /// Why.
+        error: RigError,
+    },
+    /// A clip cannot be put on a pack's skeleton.
+    #[error(transparent)]
+    Clip(#[from] PrepareError),
+}
+
+/// What the scripts read.
+#[derive(Serialize)]
+struct Data {
+    wasm: String,
+    packs: Vec<scene::PackData>,
+    clips: Vec<Named>,
+    /// `[packs][clips]`.
+    scenes: Vec<Vec<scene::SceneData>>,
+    /// Frames over which outputs are compared, and the strength there.
+    checked: usize,
+    strength: f32,
+    /// The joint that is plotted at first.
+    joint: String,
+}
+
+#[derive(Serialize)]
+struct Named {
+    name: String,
+}
+
+/// The page's HTML. `wasm` is [`WASM`], or another build of the same crate. `made`: who made it, with which command.
+pub fn page(title: &str, made: &str, packs: &[ViewPack], clips: &[ViewClip], wasm: &[u8]) -> Result<String, ViewError> {
+    if packs.is_empty() || clips.is_empty() {
+        return Err(ViewError::Empty { packs: packs.len(), clips: clips.len() });
+    }
+    let mut data = Data {
+        wasm: BASE64_STANDARD.encode(wasm),
+        packs: Vec::new(),
+        clips: clips.iter().map(|clip| Named { name: clip.name.clone() }).collect(),
+        scenes: Vec::new(),
+        checked: CHECKED,
+        strength: STRENGTH,
+        joint: String::new(),
+    };
+    for pack in packs {
+        let player = scene::Player::new(pack)?;
+        data.scenes.push(clips.iter().map(|clip| player.scene(clip)).collect::<Result<_, _>>()?);
+        data.packs.push(player.data());
+    }
+    data.joint = scene::first_joint(&data.packs);
+    let json = serde_json::to_string(&data).unwrap_or_else(|error| unreachable!("plain data has no JSON: {error}"));
+    // A script element ends at the first `</`, whatever it holds.
+    let json = json.replace("</", "<\\/");
+    let scripts = SCRIPTS.join("\n");
+    let parts = [("style", STYLE), ("made", &escape(made)), ("scripts", &scripts), ("data", &json)];
+    // The title may be in any part, so it goes first; the data last, for what is in it must not be taken for a mark.
+    let mut page = PAGE.replace("{{title}}", &escape(title));
+    for (mark, part) in parts {
+        page = page.replacen(&format!("{{{{{mark}}}}}"), part, 1);
+    }
+    Ok(page)
+}
+
+fn escape(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}

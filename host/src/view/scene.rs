@@ -1,0 +1,200 @@
+//! A pack on a clip.
+
+use base64::Engine as _;
+use base64::prelude::BASE64_STANDARD;
+use kinesic::mechanics::Modulation;
+use kinesic::model::ModelMeta;
+use kinesic::pose::Controls;
+use kinesic::{LoadError, Pack, Pose};
+use serde::Serialize;
+
+use super::{ViewClip, ViewError, ViewPack};
+use crate::clip::{Canonical, JointMap, Skeleton};
+use crate::components;
+use crate::mechanics::{decouple, modulate};
+use crate::prepare::Source;
+use crate::rig::{MAX_JOINTS, Rig};
+use crate::translate::{self, Timing};
+
+/// Frames of each clip whose output the page compares with the host's.
+pub const CHECKED: usize = 300;
+
+/// Strength of that comparison: 1 would give body mechanics nothing to do.
+pub const STRENGTH: f32 = 1.5;
+
+type HostPose = Pose<MAX_JOINTS>;
+
+/// A pack as the scripts read it.
+#[derive(Serialize)]
+pub(super) struct PackData {
+    name: String,
+    engine: &'static str,
+    rate: f32,
+    size: usize,
+    plausible: [f32; 2],
+    joints: Vec<JointData>,
+    /// Joints that stand for the feet, left and right.
+    feet: Vec<usize>,
+    head: Option<usize>,
+    legs: Vec<usize>,
+    bytes: String,
+}
+
+#[derive(Serialize)]
+struct JointData {
+    name: String,
+    parent: Option<usize>,
+    tip: Option<[f64; 3]>,
+    /// Canonical name: finds the same joint on another skeleton.
+    part: Option<&'static str>,
+}
+
+/// A clip on a pack's skeleton.
+#[derive(Serialize)]
+pub(super) struct SceneData {
+    source: String,
+    target: Option<String>,
+    /// Of what the host makes of the source, see [`digest`].
+    digest: String,
+}
+
+/// The engine that plays a pack: the first of these that it holds, as in `wasm/src/engine.rs`.
+#[derive(Clone, Copy)]
+enum Engine {
+    Translator([f32; 2]),
+    Components([f32; 2]),
+    Mechanics,
+}
+
+impl Engine {
+    fn of(pack: &Pack) -> Option<Self> {
+        let models: Vec<ModelMeta> = pack.metadata().models.iter().collect();
+        let translator = models.iter().find_map(|m| m.translator()).map(|meta| Self::Translator(meta.strength));
+        let components = || models.iter().find_map(|m| m.components()).map(|meta| Self::Components(meta.strength));
+        let mechanics = || models.iter().find_map(|m| m.mechanics()).map(|_| Self::Mechanics);
+        translator.or_else(components).or_else(mechanics)
+    }
+
+    fn play(self, pack: &Pack, poses: &[HostPose], strength: f32) -> Result<Vec<HostPose>, LoadError> {
+        let controls = Controls { strength, ..Controls::default() };
+        match self {
+            Self::Translator(_) => {
+                translate::play(pack, poses, &translate::Settings { controls, timing: Timing::Keep })
+            }
+            Self::Components(_) => components::play(pack, poses, &components::Settings { controls }),
+            Self::Mechanics => {
+                let modulation = Modulation { amount: strength, ..Modulation::default() };
+                Ok(modulate(poses, &decouple(pack, poses)?, &modulation))
+            }
+        }
+    }
+}
+
+/// What plays one pack.
+pub(super) struct Player<'p> {
+    name: &'p str,
+    pack: Pack<'p>,
+    bytes: &'p [u8],
+    rig: Rig,
+    engine: Engine,
+}
+
+impl<'p> Player<'p> {
+    pub fn new(of: &'p ViewPack) -> Result<Self, ViewError> {
+        let refuse = |error| ViewError::Pack { name: of.name.clone(), error };
+        let pack = of.file.pack().map_err(refuse)?;
+        let rig = Rig::from_pack(&pack).map_err(|error| ViewError::Rig { name: of.name.clone(), error })?;
+        let expected = "a translator, style components or body mechanics";
+        let engine = Engine::of(&pack).ok_or(LoadError::NoModel { expected }).map_err(refuse)?;
+        Ok(Self { name: &of.name, pack, bytes: of.file.bytes(), rig, engine })
+    }
+
+    pub fn data(&self) -> PackData {
+        let (skeleton, map) = (&self.rig.skeleton, &self.rig.map);
+        let foot = |toe, ankle| map.joint(toe).or(map.joint(ankle));
+        let (engine, plausible) = match self.engine {
+            Engine::Translator(range) => ("translator", range),
+            Engine::Components(range) => ("components", range),
+            Engine::Mechanics => ("mechanics", [0.0, 2.0]),
+        };
+        PackData {
+            name: self.name.to_owned(),
+            engine,
+            rate: self.pack.metadata().frame_rate,
+            size: self.bytes.len(),
+            plausible,
+            joints: joints(skeleton, map),
+            feet: [foot(Canonical::LToe, Canonical::LAnkle), foot(Canonical::RToe, Canonical::RAnkle)]
+                .into_iter()
+                .flatten()
+                .collect(),
+            head: map.joint(Canonical::Head),
+            legs: legs(skeleton, map),
+            bytes: BASE64_STANDARD.encode(self.bytes),
+        }
+    }
+
+    pub fn scene(&self, clip: &ViewClip) -> Result<SceneData, ViewError> {
+        let poses = |source: &Source| -> Result<Vec<HostPose>, ViewError> {
+            let on_rig = source.on_rig(&self.rig, f64::from(self.pack.metadata().frame_rate))?;
+            Ok(self.rig.poses(&on_rig))
+        };
+        let source = poses(&clip.source)?;
+        let target = clip.target.as_ref().map(poses).transpose()?;
+        let checked = source.get(..CHECKED).unwrap_or(&source);
+        let played = self.engine.play(&self.pack, checked, STRENGTH);
+        let played = played.map_err(|error| ViewError::Pack { name: self.name.to_owned(), error })?;
+        let joints = self.rig.joints();
+        let text = |poses: &[HostPose]| {
+            let words: Vec<u32> = poses.iter().flat_map(|pose| words(pose, joints)).collect();
+            BASE64_STANDARD.encode(bytemuck::cast_slice(&words))
+        };
+        Ok(SceneData { source: text(&source), target: target.as_deref().map(text), digest: digest(&played, joints) })
+    }
+}
+
+/// Bits of a pose: the root, then the quaternions `x y z w`.
+fn words(pose: &HostPose, joints: usize) -> impl Iterator<Item = u32> {
+    let rotations = pose.rotations.iter().take(joints).flat_map(|q| q.coords.iter());
+    pose.root.iter().chain(rotations).map(|x| x.to_bits())
+}
+
+/// Two hashes over the bits of poses, as the page computes them: 16 hexadecimal digits.
+pub fn digest(poses: &[HostPose], joints: usize) -> String {
+    let (mut a, mut b) = (0x811c_9dc5u32, 0x9e37_79b9u32);
+    for word in poses.iter().flat_map(|pose| words(pose, joints)) {
+        a = (a ^ word).wrapping_mul(0x0100_0193);
+        b = (b ^ word).wrapping_mul(0x85eb_ca6b).wrapping_add(a);
+    }
+    format!("{a:08x}{b:08x}")
+}
+
+fn joints(skeleton: &Skeleton, map: &JointMap) -> Vec<JointData> {
+    let part = |joint: usize| Canonical::ALL.into_iter().find(|c| map.joint(*c) == Some(joint)).map(Canonical::name);
+    let joint = |(index, joint): (usize, &crate::clip::Joint)| JointData {
+        name: joint.name.clone(),
+        parent: joint.parent,
+        tip: joint.end.map(Into::into),
+        part: part(index),
+    };
+    skeleton.joints.iter().enumerate().map(joint).collect()
+}
+
+/// Hips' ball joints and all below.
+fn legs(skeleton: &Skeleton, map: &JointMap) -> Vec<usize> {
+    let tops = [map.joint(Canonical::LHip), map.joint(Canonical::RHip)];
+    let mut legs: Vec<usize> = Vec::new();
+    for (index, joint) in skeleton.joints.iter().enumerate() {
+        if tops.contains(&Some(index)) || joint.parent.is_some_and(|parent| legs.contains(&parent)) {
+            legs.push(index);
+        }
+    }
+    legs
+}
+
+/// A joint in which manners show: an elbow.
+pub(super) fn first_joint(packs: &[PackData]) -> String {
+    let elbow = |joint: &&JointData| joint.part == Some(Canonical::LElbow.name());
+    let joints = packs.first().map_or(&[][..], |pack| &pack.joints);
+    joints.iter().find(elbow).or(joints.first()).map_or_else(String::new, |joint| joint.name.clone())
+}

@@ -1,0 +1,119 @@
+//! The core as WebAssembly, without bindings: numbers and addresses cross the boundary, everything else lies in static memory.
+//!
+//! One instance plays one pack. The page grows the memory by the pack, writes the bytes there and calls [`load`]; then it writes a
+//! pose to [`input`], calls [`step`], and reads [`output`]. A pose is `3 + 4 JOINTS` floats: the root's position, m, and each joint's
+//! unit quaternion `x y z w`. The capacities are those of `kinesic-host`, so that everything it plays plays here, with the same bits.
+#![no_std]
+
+mod engine;
+mod memory;
+
+use core::fmt::Write;
+
+use engine::Engine;
+use kinesic::Pack;
+use kinesic::pose::{World, forward};
+use memory::{Floats as _, Write as _, memory};
+
+/// Joints that a pose holds.
+pub const JOINTS: usize = 128;
+
+/// Takes the pack at an address. 0 if it loaded, else the length of the [`message`] that says why not.
+///
+/// # Safety
+/// The address is divisible by 16 and valid for `len` bytes, which are never changed again.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn load(pack: *const u8, len: usize) -> usize {
+    // SAFETY: by the caller's promise.
+    let bytes: &'static [u8] = unsafe { core::slice::from_raw_parts(pack, len) };
+    let memory = memory();
+    memory.message.clear();
+    memory.mask = [1.0; JOINTS];
+    match Pack::load(bytes).and_then(|pack| Engine::load(&pack)) {
+        Ok(engine) => memory.engine.put(engine),
+        // Writing to a message cannot fail: what is too long is cut.
+        Err(error) => drop(write!(memory.message, "{error}").is_ok()),
+    }
+    memory.message.text().len()
+}
+
+/// Address of the text of the last refusal, UTF-8.
+#[unsafe(no_mangle)]
+pub extern "C" fn message() -> *const u8 {
+    memory().message.text().as_ptr()
+}
+
+/// Address of the pose that [`step`] reads.
+#[unsafe(no_mangle)]
+pub extern "C" fn input() -> *mut f32 {
+    memory().input.as_mut_ptr()
+}
+
+/// Address of the pose whose expression [`mix`] takes.
+#[unsafe(no_mangle)]
+pub extern "C" fn other() -> *mut f32 {
+    memory().other.as_mut_ptr()
+}
+
+/// Address of the pose that [`step`] and [`mix`] write.
+#[unsafe(no_mangle)]
+pub extern "C" fn output() -> *mut f32 {
+    memory().output.as_mut_ptr()
+}
+
+/// Address of the joints' weights, `[JOINTS]`, 1 after [`load`].
+#[unsafe(no_mangle)]
+pub extern "C" fn mask() -> *mut f32 {
+    memory().mask.as_mut_ptr()
+}
+
+/// Address of the world positions that [`place`] writes, `[JOINTS]` of x, y, z in m.
+#[unsafe(no_mangle)]
+pub extern "C" fn positions() -> *const f32 {
+    memory().positions.as_ptr().cast()
+}
+
+/// Forgets the past: the next [`step`] is the first of a stream.
+#[unsafe(no_mangle)]
+pub extern "C" fn reset() {
+    if let Some(engine) = memory().engine.get() {
+        engine.reset();
+    }
+}
+
+/// One frame: [`input`] to [`output`], with a strength (translator, components) or an amount of expression (body mechanics).
+#[unsafe(no_mangle)]
+pub extern "C" fn step(strength: f32) {
+    let memory = memory();
+    if let Some(engine) = memory.engine.get() {
+        engine.step(&memory.input.pose(), strength, &memory.mask).write(&mut memory.output);
+    }
+}
+
+/// One frame of body mechanics: the mechanics of [`input`] with the expression of [`other`] times `amount`. With another engine as
+/// [`step`].
+#[unsafe(no_mangle)]
+pub extern "C" fn mix(amount: f32) {
+    let memory = memory();
+    if let Some(engine) = memory.engine.get() {
+        engine.mix(&memory.input.pose(), &memory.other.pose(), amount, &memory.mask).write(&mut memory.output);
+    }
+}
+
+/// World positions of the joints of a pose: 0 = [`input`], 1 = [`output`]. Core's forward kinematics.
+#[unsafe(no_mangle)]
+pub extern "C" fn place(which: u32) {
+    let memory = memory();
+    if let Some(engine) = memory.engine.get() {
+        let pose = if which == 0 { memory.input.pose() } else { memory.output.pose() };
+        let mut world = World::identity();
+        forward(engine.skeleton(), &pose, &mut world);
+        memory.positions = world.positions.map(Into::into);
+    }
+}
+
+#[cfg(target_arch = "wasm32")]
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
+    core::arch::wasm32::unreachable()
+}
