@@ -7,6 +7,7 @@
 pub mod components;
 mod digest;
 mod frames;
+pub mod kernel;
 pub mod mechanics;
 pub mod pose;
 pub mod translator;

@@ -17,6 +17,7 @@ mod mask;
 mod mix;
 mod modulate;
 mod output;
+mod quantize;
 mod train;
 
 use clap::{Parser, Subcommand};
@@ -52,6 +53,7 @@ enum Command {
     Modulate(modulate::Args),
     Mix(mix::Args),
     Blend(blend::Args),
+    Quantize(quantize::Args),
     Export(export::Args),
     Completions(completions::Args),
 }
@@ -68,6 +70,7 @@ pub fn run(cli: Cli) -> miette::Result<()> {
         Command::Modulate(args) => modulate::run(&args),
         Command::Mix(args) => mix::run(&args),
         Command::Blend(args) => blend::run(&args),
+        Command::Quantize(args) => quantize::run(&args),
         Command::Export(args) => export::run(&args),
         Command::Completions(args) => completions::run(&args),
     }
