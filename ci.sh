@@ -85,6 +85,8 @@ bench_peers() {
     cargo build --release --locked -p kinesic-host --example components_bench
     "$work/bin/python" benches/peers/host.py target/release/host-jobs "$work/jobs"
     "$work/bin/python" benches/peers/components.py target/release/examples/components_bench "$work/jobs"
+    cargo build --release --locked -p kinesic-host --bins
+    "$work/bin/python" benches/peers/faces.py target/release/kinesic "$work/faces"
 }
 
 # Coverage by the compiler's own pass, on the stable toolchain; without a sanitizer, since nothing here is unsafe code of ours.

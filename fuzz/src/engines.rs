@@ -1,5 +1,6 @@
 //! Every engine, 100 frames. A new engine gets a function and a line in [`step_all`].
 
+use kinesic::face::{FaceState, FaceSynth, POINTS};
 use kinesic::mechanics::{Blend, Decoupled, Modulation, Window, mix, modulate};
 use kinesic::{BodyMechanics, Components, ComponentsState, MechanicsState, Pack, Pose, Translator, TranslatorState};
 
@@ -13,6 +14,7 @@ pub fn step_all(pack: &Pack, frames: &mut Frames) {
     translator(pack, frames);
     mechanics(pack, frames);
     components(pack, frames);
+    face(pack, frames);
 }
 
 fn translator(pack: &Pack, frames: &mut Frames) {
@@ -59,5 +61,20 @@ fn components(pack: &Pack, frames: &mut Frames) {
         }
         model.step(&mut state, &frames.pose(), &mut styled);
         model.step_stored(&mut state, &mut styled);
+    }
+}
+
+fn face(pack: &Pack, frames: &mut Frames) {
+    let Ok(model) = FaceSynth::<64>::load(pack) else { return };
+    let mut state = FaceState::new();
+    let mut offsets = [[0.0; 2]; POINTS];
+    for _ in 0..STEPS {
+        state.change = frames.control();
+        let odd = frames.next() % 8 == 0;
+        let mut number = || if odd { frames.control() } else { 100.0 * frames.unit() };
+        let landmarks = [(); POINTS].map(|()| [number(), number()]);
+        model.step(&mut state, &landmarks, &mut offsets);
+        model.read(&landmarks);
+        model.shape((frames.next() % 16) as usize, frames.control());
     }
 }
