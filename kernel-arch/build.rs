@@ -16,7 +16,7 @@ fn main() {
         flags.contains(&format!("target-cpu={name}")) && !flags.contains("nodsp") && !flags.contains("-dsp")
     };
     if target.starts_with("thumbv7em")
-        || (target.starts_with("thumbv8m.main") && WITH_DSP.iter().any(|name| cpu(&name)))
+        || (target.starts_with("thumbv8m.main") && WITH_DSP.iter().any(cpu))
     {
         choose("dsp");
     } else if target.starts_with("thumbv6m") {
