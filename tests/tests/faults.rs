@@ -96,7 +96,7 @@ const FAULTS: [(&str, usize, Fault); 22] = [
         "rotations of the other sign",
         30,
         Fault::Frame(false, |pose, at, _| {
-            if at % 2 == 0 {
+            if at.is_multiple_of(2) {
                 for q in &mut pose.rotations {
                     *q = scaled(q, -1.0);
                 }
@@ -173,7 +173,7 @@ fn run(packs: &Packs, engine: &str, fault: Option<&(&str, usize, Fault)>) -> Run
         if let Some((.., fault)) = during {
             match fault {
                 Fault::Missing => (given, must_see) = (false, true),
-                Fault::Jitter => (given, must_see) = (frame % 2 == 0, frame % 2 != 0),
+                Fault::Jitter => (given, must_see) = (frame.is_multiple_of(2), !frame.is_multiple_of(2)),
                 Fault::Frozen => (input, must_see) = (last, frame - START > 60),
                 Fault::Frame(see, change) => {
                     change(&mut input, frame, &mut random);

@@ -70,7 +70,7 @@ fn frame(source: &Source, random: &mut Random, at: usize) -> Option<Pose<JOINTS>
         }
         4 => {
             // From one end to the other.
-            let turn = if at / 5 % 2 == 0 { 3.0 } else { -3.0 };
+            let turn = if (at / 5).is_multiple_of(2) { 3.0 } else { -3.0 };
             for (joint, q) in pose.rotations.iter_mut().enumerate() {
                 let axis = [Vector3::x(), Vector3::y(), Vector3::z()][joint % 3];
                 *q = UnitQuaternion::from_scaled_axis(axis * turn);

@@ -28,11 +28,14 @@ pub fn limits() -> LimitsModel {
     model
 }
 
+/// Steps of the coordinates, of the root and of the hips' rotation.
+type Steps = (Vec<[f32; 3]>, Vector3<f32>, Vector3<f32>);
+
 /// Where everything was in the last two frames.
 #[derive(Clone, Debug, Default)]
 pub struct Watch {
     last: Option<(Vec<[f32; 3]>, Pose<JOINTS>)>,
-    went: Option<(Vec<[f32; 3]>, Vector3<f32>, Vector3<f32>)>,
+    went: Option<Steps>,
     /// Largest excess over a rate's step so far, rad or m.
     pub excess: f32,
 }
