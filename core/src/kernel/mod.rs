@@ -5,10 +5,14 @@
 
 mod activation;
 mod modal;
+mod quantised;
 mod tiled;
 
 pub use activation::{quadrant_angle, sin_cos, tanh};
 pub use modal::{Block, JointBlock, advance, advance_joint, is_stable, settle};
+pub use quantised::{
+    ACTIVATION_BITS, Activations, LARGEST_ACTIVATION, MOST_COLUMNS, PRE_ACTIVATION_BITS, Quantised, TILE, tanh_fixed,
+};
 pub use tiled::{ROWS, Tiled};
 
 /// `sum(a[i] * b[i])` in index order over the shorter length. Cost: one multiply-add per element.

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `contact` | which foot stands, over the running ground estimate |
 //! | `features` | [`DynamicFeatures`]: hip velocity, contacts, time in the air, hip height, thighs |
+//! | `layers` | the network's layers, f32 or int8 |
 //! | `network` | [`BodyMechanics`]: features -> code -> pose without expression |
 //! | `decouple` | [`Decoupler`]: observed = expressive x mechanics, weighted by the activity index |
 //! | `modulate`, `blend` | more or less expression; one's mechanics with another's expression; two motions blended |
@@ -17,6 +18,7 @@ mod contact;
 mod decouple;
 mod features;
 mod modulate;
+mod layers;
 mod network;
 mod rotation;
 
@@ -25,5 +27,6 @@ pub use contact::{Contacts, Thresholds};
 pub use decouple::{Decoupled, Decoupler};
 pub use features::{Body, DynamicFeatures, FEATURES, FeatureState, feature};
 pub use modulate::{Modulation, mix, modulate};
+pub use layers::{FARTHEST, INPUT_SCALE, OUTPUT_BITS, Precision};
 pub use network::{BodyMechanics, MechanicsState};
 pub use rotation::{angle, power};

@@ -4,12 +4,9 @@ use nalgebra::Quaternion;
 
 use super::decouple::{Decoupled, Decoupler, LARGEST_EXPONENT};
 use super::features::{DynamicFeatures, FEATURES, FeatureState, fits};
-use crate::kernel::{ROWS, Tiled, tanh};
+use super::layers::{FARTHEST, Layers, Precision};
 use crate::model::{LoadError, MechanicsMeta, ModelMeta, Pack};
 use crate::pose::{Pose, unit};
-
-/// Features this many deviations away from the mean are cut: further away the network knows nothing.
-const FARTHEST: f32 = 6.0;
 
 /// Features -> hidden layer (tanh) -> code (tanh) -> decoder (linear) -> local unit quaternions of all joints but the hips.
 ///
@@ -20,54 +17,13 @@ pub struct BodyMechanics<'a, const JOINTS: usize, const UNITS: usize, const WIND
     features: DynamicFeatures<'a>,
     mean: &'a [f32],
     inverse_deviation: &'a [f32],
-    hidden: Layer<'a>,
-    code: Layer<'a>,
-    decoder: Layer<'a>,
+    layers: Layers<'a>,
     /// Activity index.
     pub decoupler: Decoupler,
 }
 
 /// What a running model remembers.
 pub type MechanicsState<const JOINTS: usize, const WINDOW: usize> = FeatureState<JOINTS, WINDOW>;
-
-/// `W x + b`.
-#[derive(Clone, Copy, Debug)]
-struct Layer<'a> {
-    weights: Tiled<'a>,
-    bias: &'a [f32],
-}
-
-impl<'a> Layer<'a> {
-    fn load(
-        pack: &Pack<'a>,
-        [weights, bias]: [&'static str; 2],
-        rows: usize,
-        columns: usize,
-    ) -> Result<Self, LoadError> {
-        let expected = rows.div_ceil(ROWS).saturating_mul(columns);
-        let tiles = pack.slice(weights, expected)?;
-        let shape = LoadError::Shape { tensor: weights, found: tiles.len(), expected };
-        Ok(Self { weights: Tiled::new(rows, columns, tiles).ok_or(shape)?, bias: pack.slice(bias, rows)? })
-    }
-
-    /// `out` gets one value a row; what lies behind is left alone.
-    fn apply(&self, x: &[f32], out: &mut [f32]) {
-        let rows = self.bias.len().min(out.len());
-        if let Some((out, _)) = out.split_at_mut_checked(rows) {
-            for (out, bias) in out.iter_mut().zip(self.bias) {
-                *out = *bias;
-            }
-            self.weights.multiply_add(x, out);
-        }
-    }
-
-    fn apply_tanh(&self, x: &[f32], out: &mut [f32]) {
-        self.apply(x, out);
-        for out in out.iter_mut().take(self.bias.len()) {
-            *out = tanh(*out);
-        }
-    }
-}
 
 impl<'a, const JOINTS: usize, const UNITS: usize, const WINDOW: usize> BodyMechanics<'a, JOINTS, UNITS, WINDOW> {
     /// The body mechanics of a pack, after every check that makes [`step`](Self::step) infallible.
@@ -87,9 +43,7 @@ impl<'a, const JOINTS: usize, const UNITS: usize, const WINDOW: usize> BodyMecha
             features,
             mean: pack.slice("mechanics/feature_mean", FEATURES)?,
             inverse_deviation: pack.slice("mechanics/feature_inverse_deviation", FEATURES)?,
-            hidden: Layer::load(pack, ["mechanics/hidden", "mechanics/hidden_bias"], hidden, FEATURES)?,
-            code: Layer::load(pack, ["mechanics/code", "mechanics/code_bias"], code, hidden)?,
-            decoder: Layer::load(pack, ["mechanics/decoder", "mechanics/decoder_bias"], outputs, code)?,
+            layers: Layers::load(pack, [hidden, code, outputs], UNITS)?,
             decoupler: Decoupler { gain: meta.gain, exponent: meta.exponent },
         })
     }
@@ -106,8 +60,12 @@ impl<'a, const JOINTS: usize, const UNITS: usize, const WINDOW: usize> BodyMecha
 
     /// Multiply-adds of the network alone, a frame.
     pub fn multiply_adds(&self) -> usize {
-        let layers = [self.hidden, self.code, self.decoder];
-        layers.iter().map(|l| l.bias.len().next_multiple_of(ROWS) * l.weights.columns()).sum()
+        self.layers.multiply_adds()
+    }
+
+    /// Number type of the weights.
+    pub fn precision(&self) -> Precision {
+        self.layers.precision()
     }
 
     /// `B`: the pose that the features ask for. Root and hips are those of `observed`.
@@ -121,10 +79,8 @@ impl<'a, const JOINTS: usize, const UNITS: usize, const WINDOW: usize> BodyMecha
         {
             *input = ((feature - mean) * scale).clamp(-FARTHEST, FARTHEST);
         }
-        let (mut hidden, mut code, mut output) = ([0.0; UNITS], [0.0; UNITS], [[0.0f32; 4]; JOINTS]);
-        self.hidden.apply_tanh(&input, &mut hidden);
-        self.code.apply_tanh(&hidden, &mut code);
-        self.decoder.apply(&code, output.as_flattened_mut());
+        let mut output = [[0.0f32; 4]; JOINTS];
+        self.layers.apply::<UNITS>(&input, output.as_flattened_mut());
         *mechanics = *observed;
         let joints = self.features.skeleton().joints().saturating_sub(1);
         for (rotation, [x, y, z, w]) in mechanics.rotations.iter_mut().skip(1).zip(output).take(joints) {

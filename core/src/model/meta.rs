@@ -209,14 +209,21 @@ pub enum TensorType {
     F32,
     /// Unsigned 16 bit.
     U16,
+    /// Signed 8 bit.
+    I8,
+    /// Signed 16 bit.
+    I16,
+    /// Signed 32 bit.
+    I32,
 }
 
 impl TensorType {
     /// Bytes of one element.
     pub fn size(self) -> usize {
         match self {
-            Self::F32 => 4,
-            Self::U16 => 2,
+            Self::F32 | Self::I32 => 4,
+            Self::U16 | Self::I16 => 2,
+            Self::I8 => 1,
         }
     }
 }

@@ -25,7 +25,29 @@ impl<'a> Pack<'a> {
         Ok(meta.shape[0] as usize)
     }
 
-    /// The tensor `name` as a slice of `T` (`f32`, `u16` or arrays of them), which must have `expected` elements.
+    /// The bytes of a tensor of this pack's metadata; `None` for one that is not in it.
+    pub fn bytes(&self, tensor: &TensorMeta) -> Option<&'a [u8]> {
+        bytes(tensor, self.payload)
+    }
+
+    /// Number type of the tensor `name`.
+    pub fn number(&self, name: &'static str) -> Result<TensorType, LoadError> {
+        let meta = self.metadata.tensors.iter().find(|t| t.name == name).ok_or(LoadError::NoTensor { tensor: name })?;
+        Ok(meta.kind)
+    }
+
+    /// The int8 tensor `name` as `expected` tile groups of sixteen weights, four words each: see
+    /// [`Quantised`](crate::kernel::Quantised).
+    pub(crate) fn packed(&self, name: &'static str, expected: usize) -> Result<&'a [[u32; 4]], LoadError> {
+        let meta = self.metadata.tensors.iter().find(|t| t.name == name).ok_or(LoadError::NoTensor { tensor: name })?;
+        let groups: Option<&'a [[u32; 4]]> = bytes(&meta, self.payload)
+            .filter(|_| meta.kind == TensorType::I8)
+            .and_then(|bytes| bytemuck::try_cast_slice(bytes).ok());
+        let found = groups.map_or(meta.len().unwrap_or(usize::MAX) / 16, <[_]>::len);
+        groups.filter(|groups| groups.len() == expected).ok_or(LoadError::Shape { tensor: name, found, expected })
+    }
+
+    /// The tensor `name` as a slice of `T` (`f32`, `u16`, `i32` or arrays of them), which must have `expected` elements.
     ///
     /// Numbers are checked to be finite, so that no step can meet a NaN that came from the file.
     pub fn slice<T: Element>(&self, name: &'static str, expected: usize) -> Result<&'a [T], LoadError> {
@@ -61,6 +83,13 @@ impl Element for f32 {
 
 impl Element for u16 {
     const TYPE: TensorType = TensorType::U16;
+    fn is_valid(&self) -> bool {
+        true
+    }
+}
+
+impl Element for i32 {
+    const TYPE: TensorType = TensorType::I32;
     fn is_valid(&self) -> bool {
         true
     }

@@ -1,0 +1,149 @@
+//! The three layers of the network, in f32 or with int8 weights: the pack's tensors decide.
+
+use super::features::{FEATURES, fits};
+use crate::kernel::{Activations, LARGEST_ACTIVATION, Quantised, ROWS, TILE, Tiled, tanh};
+use crate::model::{LoadError, Pack, TensorType};
+
+/// Features this many deviations away from the mean are cut: further away the network knows nothing.
+pub const FARTHEST: f32 = 6.0;
+
+/// Fraction bits of the integer output: a quaternion's component, before it is brought to length 1.
+pub const OUTPUT_BITS: u32 = 14;
+
+/// Activations of the first integer layer a deviation of a feature: [`FARTHEST`] deviations are the largest activation.
+pub const INPUT_SCALE: f32 = LARGEST_ACTIVATION as f32 / FARTHEST;
+
+/// Features rounded up to whole groups of the integer kernel.
+const PADDED_FEATURES: usize = FEATURES.next_multiple_of(TILE);
+
+/// Number type of a network's weights.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Precision {
+    /// Single precision.
+    F32,
+    /// int8 weights with a scale a row, int16 activations, int32 sums.
+    I8,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub enum Layers<'a> {
+    Float([Layer<'a>; 3]),
+    Integer([Quantised<'a>; 3]),
+}
+
+/// `W x + b`.
+#[derive(Clone, Copy, Debug)]
+pub struct Layer<'a> {
+    weights: Tiled<'a>,
+    bias: &'a [f32],
+}
+
+impl<'a> Layers<'a> {
+    /// Layers of `hidden`, `code` and `outputs` rows; `units` is the capacity for what lies between two layers.
+    pub fn load(pack: &Pack<'a>, [hidden, code, outputs]: [usize; 3], units: usize) -> Result<Self, LoadError> {
+        let float = |names, rows, columns| Layer::load(pack, names, rows, columns);
+        let integer = |names, rows, columns| Quantised::load(pack, names, rows, columns);
+        if pack.number("mechanics/hidden")? == TensorType::I8 {
+            // The integer kernel reads whole groups of activations.
+            fits("UNITS", hidden.max(code).next_multiple_of(TILE), units / TILE * TILE)?;
+            let names = [
+                ["mechanics/hidden", "mechanics/hidden_scale", "mechanics/hidden_bias"],
+                ["mechanics/code", "mechanics/code_scale", "mechanics/code_bias"],
+                ["mechanics/decoder", "mechanics/decoder_scale", "mechanics/decoder_bias"],
+            ];
+            let [first, second, third] = names;
+            return Ok(Self::Integer([
+                integer(first, hidden, FEATURES)?,
+                integer(second, code, hidden)?,
+                integer(third, outputs, code)?,
+            ]));
+        }
+        Ok(Self::Float([
+            float(["mechanics/hidden", "mechanics/hidden_bias"], hidden, FEATURES)?,
+            float(["mechanics/code", "mechanics/code_bias"], code, hidden)?,
+            float(["mechanics/decoder", "mechanics/decoder_bias"], outputs, code)?,
+        ]))
+    }
+
+    pub fn precision(&self) -> Precision {
+        match self {
+            Self::Float(_) => Precision::F32,
+            Self::Integer(_) => Precision::I8,
+        }
+    }
+
+    pub fn multiply_adds(&self) -> usize {
+        match self {
+            Self::Float(layers) => {
+                layers.iter().map(|l| l.bias.len().next_multiple_of(ROWS) * l.weights.columns()).sum()
+            }
+            Self::Integer(layers) => layers.iter().map(Quantised::multiply_adds).sum(),
+        }
+    }
+
+    /// From features, normalised and cut at [`FARTHEST`], to quaternions.
+    pub fn apply<const UNITS: usize>(&self, input: &[f32; FEATURES], output: &mut [f32]) {
+        match self {
+            Self::Float(layers) => float::<UNITS>(layers, input, output),
+            Self::Integer(layers) => integer::<UNITS>(layers, input, output),
+        }
+    }
+}
+
+// Two functions, so that the stack holds one precision's activations.
+#[inline(never)]
+fn float<const UNITS: usize>([hidden, code, decoder]: &[Layer<'_>; 3], input: &[f32; FEATURES], output: &mut [f32]) {
+    let (mut first, mut second) = ([0.0; UNITS], [0.0; UNITS]);
+    hidden.apply_tanh(input, &mut first);
+    code.apply_tanh(&first, &mut second);
+    decoder.apply(&second, output);
+}
+
+#[inline(never)]
+fn integer<const UNITS: usize>(
+    [hidden, code, decoder]: &[Quantised<'_>; 3],
+    input: &[f32; FEATURES],
+    output: &mut [f32],
+) {
+    let mut features = Activations::<PADDED_FEATURES>::zero();
+    for (out, x) in features.values().iter_mut().zip(input) {
+        // Half is added away from zero, and the cast cuts: to nearest, with nothing but exact operations.
+        *out = (x * INPUT_SCALE + if *x < 0.0 { -0.5 } else { 0.5 }) as i16;
+    }
+    let (mut first, mut second) = (Activations::<UNITS>::zero(), Activations::<UNITS>::zero());
+    hidden.apply_tanh(&features, &mut first);
+    code.apply_tanh(&first, &mut second);
+    decoder.apply(&second, output, |z| z as f32 * (1.0 / (1u32 << OUTPUT_BITS) as f32));
+}
+
+impl<'a> Layer<'a> {
+    fn load(
+        pack: &Pack<'a>,
+        [weights, bias]: [&'static str; 2],
+        rows: usize,
+        columns: usize,
+    ) -> Result<Self, LoadError> {
+        let expected = rows.div_ceil(ROWS).saturating_mul(columns);
+        let tiles = pack.slice(weights, expected)?;
+        let shape = LoadError::Shape { tensor: weights, found: tiles.len(), expected };
+        Ok(Self { weights: Tiled::new(rows, columns, tiles).ok_or(shape)?, bias: pack.slice(bias, rows)? })
+    }
+
+    /// `out` gets one value a row; what lies behind is left alone.
+    fn apply(&self, x: &[f32], out: &mut [f32]) {
+        let rows = self.bias.len().min(out.len());
+        if let Some((out, _)) = out.split_at_mut_checked(rows) {
+            for (out, bias) in out.iter_mut().zip(self.bias) {
+                *out = *bias;
+            }
+            self.weights.multiply_add(x, out);
+        }
+    }
+
+    fn apply_tanh(&self, x: &[f32], out: &mut [f32]) {
+        self.apply(x, out);
+        for out in out.iter_mut().take(self.bias.len()) {
+            *out = tanh(*out);
+        }
+    }
+}

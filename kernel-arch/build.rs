@@ -1,0 +1,21 @@
+//! Which loop the target gets. The compiler does not tell a crate about the DSP extension, so it is read from the target.
+
+use std::env::var;
+
+/// ARMv8-M cores that always have the DSP extension, or have it in every part that a user can buy.
+const WITH_DSP: [&str; 4] = ["cortex-m33", "cortex-m35p", "cortex-m55", "cortex-m85"];
+
+fn main() {
+    println!("cargo::rerun-if-env-changed=CARGO_ENCODED_RUSTFLAGS");
+    if var("CARGO_FEATURE_ASM").is_err() {
+        return;
+    }
+    let target = var("TARGET").unwrap_or_default();
+    let flags = var("CARGO_ENCODED_RUSTFLAGS").unwrap_or_default();
+    let cpu = |name: &&str| flags.contains(&format!("target-cpu={name}")) && !flags.contains("nodsp") && !flags.contains("-dsp");
+    if target.starts_with("thumbv7em") || (target.starts_with("thumbv8m.main") && WITH_DSP.iter().any(|name| cpu(&name))) {
+        println!("cargo::rustc-cfg=kinesic_tile=\"dsp\"");
+    } else if target.starts_with("thumbv6m") {
+        println!("cargo::rustc-cfg=kinesic_tile=\"thumb1\"");
+    }
+}

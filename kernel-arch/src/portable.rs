@@ -1,0 +1,65 @@
+//! The loop in safe Rust: what the assembly must equal.
+
+use crate::{Inputs, Weights};
+
+/// See [`crate::tile`].
+#[inline]
+pub fn tile(weights: &[Weights], inputs: &[Inputs], sums: &mut [i32; 4]) {
+    let [mut s0, mut s1, mut s2, mut s3] = *sums;
+    for ([w0, w1, w2, w3], [low, high]) in weights.iter().zip(inputs) {
+        let x = [*low as i16, (*low >> 16) as i16, *high as i16, (*high >> 16) as i16].map(i32::from);
+        s0 = row(*w0, x, s0);
+        s1 = row(*w1, x, s1);
+        s2 = row(*w2, x, s2);
+        s3 = row(*w3, x, s3);
+    }
+    *sums = [s0, s1, s2, s3];
+}
+
+#[inline(always)]
+fn row(word: u32, [x0, x1, x2, x3]: [i32; 4], sum: i32) -> i32 {
+    let [c0, c2, c1, c3] = word.to_le_bytes().map(|byte| i32::from(byte as i8));
+    // A product fits 24 bits: it cannot wrap, only the sum can.
+    sum.wrapping_add(c0 * x0).wrapping_add(c1 * x1).wrapping_add(c2 * x2).wrapping_add(c3 * x3)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pack_weights;
+
+    #[test]
+    fn equals_the_definition_in_64_bits() {
+        let mut seed = 1u32;
+        let mut next = || {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            seed >> 8
+        };
+        for groups in 0..20 {
+            let columns = 4 * groups;
+            let mut rows = [[0i8; 80]; 4];
+            rows.iter_mut().flatten().for_each(|weight| *weight = next() as i8);
+            let mut x = [0i16; 80];
+            x.iter_mut().for_each(|x| *x = next() as i16);
+            let mut weights = [[0u32; 4]; 20];
+            let mut inputs = [[0u32; 2]; 20];
+            for group in 0..groups {
+                let at = 4 * group;
+                let word = |row: &[i8; 80]| pack_weights([row[at], row[at + 1], row[at + 2], row[at + 3]]);
+                weights[group] = [word(&rows[0]), word(&rows[1]), word(&rows[2]), word(&rows[3])];
+                let pair = |at: usize| u32::from(x[at] as u16) | u32::from(x[at + 1] as u16) << 16;
+                inputs[group] = [pair(at), pair(at + 2)];
+            }
+            let mut sums = [1, -2, 3, i32::MAX];
+            let before = sums;
+            tile(&weights[..groups], &inputs[..groups], &mut sums);
+            let mut public = before;
+            crate::tile(&weights[..groups], &inputs[..groups], &mut public);
+            assert_eq!(public, sums);
+            for row in 0..4 {
+                let exact: i64 = (0..columns).map(|c| i64::from(rows[row][c]) * i64::from(x[c])).sum();
+                assert_eq!(sums[row], (i64::from(before[row]) + exact) as i32, "row {row} of {columns} columns");
+            }
+        }
+    }
+}
