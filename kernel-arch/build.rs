@@ -12,8 +12,12 @@ fn main() {
     }
     let target = var("TARGET").unwrap_or_default();
     let flags = var("CARGO_ENCODED_RUSTFLAGS").unwrap_or_default();
-    let cpu = |name: &&str| flags.contains(&format!("target-cpu={name}")) && !flags.contains("nodsp") && !flags.contains("-dsp");
-    if target.starts_with("thumbv7em") || (target.starts_with("thumbv8m.main") && WITH_DSP.iter().any(|name| cpu(&name))) {
+    let cpu = |name: &&str| {
+        flags.contains(&format!("target-cpu={name}")) && !flags.contains("nodsp") && !flags.contains("-dsp")
+    };
+    if target.starts_with("thumbv7em")
+        || (target.starts_with("thumbv8m.main") && WITH_DSP.iter().any(|name| cpu(&name)))
+    {
         println!("cargo::rustc-cfg=kinesic_tile=\"dsp\"");
     } else if target.starts_with("thumbv6m") {
         println!("cargo::rustc-cfg=kinesic_tile=\"thumb1\"");

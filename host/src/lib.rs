@@ -19,6 +19,7 @@ pub mod models;
 pub mod pack;
 pub mod prepare;
 pub mod quality;
+pub mod quantise;
 pub mod report;
 pub mod retarget;
 pub mod rig;

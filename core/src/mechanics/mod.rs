@@ -17,8 +17,8 @@ mod blend;
 mod contact;
 mod decouple;
 mod features;
-mod modulate;
 mod layers;
+mod modulate;
 mod network;
 mod rotation;
 
@@ -26,7 +26,7 @@ pub use blend::{Blend, Window};
 pub use contact::{Contacts, Thresholds};
 pub use decouple::{Decoupled, Decoupler};
 pub use features::{Body, DynamicFeatures, FEATURES, FeatureState, feature};
-pub use modulate::{Modulation, mix, modulate};
 pub use layers::{FARTHEST, INPUT_SCALE, OUTPUT_BITS, Precision};
+pub use modulate::{Modulation, mix, modulate};
 pub use network::{BodyMechanics, MechanicsState};
 pub use rotation::{angle, power};

@@ -3,6 +3,8 @@
 use std::path::Path;
 
 use kinesic::Pack;
+use kinesic_host::pack::{PackFile, Provenance};
+use kinesic_host::quantise::to_int8;
 use kinesic_host::rig::Rig;
 use kinesic_workloads::mechanics::{JOINTS, Mechanics};
 
@@ -15,12 +17,22 @@ const SEED: u64 = 3;
 const MODEL: &str = "models/mechanics.kin";
 
 pub fn prepare(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
-    let pack = model()?;
+    over_a_walk(name, "mechanics.kin", model()?, frames)
+}
+
+/// The same model with int8 weights.
+pub fn int8(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
+    let provenance = Provenance { tool: "kinesic-firmware-sim".to_owned(), seed: SEED, ..Provenance::default() };
+    let pack = to_int8(&PackFile::from_bytes(&model()?), &provenance)?;
+    over_a_walk(name, "mechanics-i8.kin", pack, frames)
+}
+
+fn over_a_walk(name: &str, pack_name: &'static str, pack: Vec<u8>, frames: usize) -> Result<Prepared, WorkloadError> {
     let refused = |_| WorkloadError::Refused { name: name.to_owned() };
     let words = aligned(&pack);
     let rig = Rig::from_pack(&Pack::load(&bytemuck::cast_slice(&words)[..pack.len()]).map_err(refused)?)?;
     let clip = made::walk_on(&rig.skeleton, frames, SEED);
-    on_host::<Mechanics>(name, "mechanics.kin", pack, &numbers(&rig, &clip, JOINTS))
+    on_host::<Mechanics>(name, pack_name, pack, &numbers(&rig, &clip, JOINTS))
 }
 
 fn model() -> Result<Vec<u8>, WorkloadError> {

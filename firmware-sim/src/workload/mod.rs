@@ -5,6 +5,7 @@
 
 mod components;
 mod face;
+mod kernel;
 mod mechanics;
 pub mod recorded;
 mod translator;
@@ -55,6 +56,9 @@ pub enum WorkloadError {
     /// Components cannot be trained on the made walks.
     #[error(transparent)]
     Components(#[from] kinesic_host::components::TrainError),
+    /// A pack cannot be quantised.
+    #[error(transparent)]
+    Quantise(#[from] kinesic_host::quantise::QuantiseError),
     /// Recorded clips cannot be used.
     #[error(transparent)]
     #[diagnostic(help("the recorded clips are looked for in --data, else in KINESIC_DATA, else in ../shared/data"))]
@@ -77,8 +81,11 @@ const ALL: &[(&str, Make)] = &[
     ("translator", translator::per_joint),
     ("translator-body", translator::whole_body),
     ("mechanics", mechanics::prepare),
+    ("mechanics-i8", mechanics::int8),
     ("components", components::prepare),
     ("face", face::prepare),
+    ("kernel-f32", kernel::f32),
+    ("kernel-i8", kernel::i8),
 ];
 
 /// Makes pack and input of a workload and runs it on the host.

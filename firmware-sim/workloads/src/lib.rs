@@ -8,6 +8,7 @@ pub mod components;
 mod digest;
 pub mod face;
 mod frames;
+pub mod kernel;
 pub mod mechanics;
 pub mod pose;
 pub mod translator;

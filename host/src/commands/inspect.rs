@@ -149,6 +149,7 @@ fn model(pack: &Pack, meta: &ModelMeta, joints: usize) -> miette::Result<ModelRe
                 "hidden": meta.hidden,
                 "code": meta.code,
                 "body_height_m": centimetres(meta.body_height),
+                "weights": format!("{:?}", mechanics.precision()).to_lowercase(),
                 "hip_height_m": centimetres(meta.hip_height),
                 "multiply_adds_per_frame_before_kinematics": mechanics.multiply_adds(),
             });

@@ -18,6 +18,7 @@ mod mask;
 mod mix;
 mod modulate;
 mod output;
+mod quantize;
 mod train;
 mod view;
 
@@ -55,6 +56,7 @@ enum Command {
     Mix(mix::Args),
     Blend(blend::Args),
     View(view::Args),
+    Quantize(quantize::Args),
     Export(export::Args),
     Completions(completions::Args),
     Face(face::Args),
@@ -73,6 +75,7 @@ pub fn run(cli: Cli) -> miette::Result<()> {
         Command::Mix(args) => mix::run(&args),
         Command::Blend(args) => blend::run(&args),
         Command::View(args) => view::run(&args),
+        Command::Quantize(args) => quantize::run(&args),
         Command::Export(args) => export::run(&args),
         Command::Completions(args) => completions::run(&args),
         Command::Face(args) => face::run(&args),

@@ -1,12 +1,13 @@
 //! From models to bytes.
 
-use kinesic::kernel::ROWS;
+use kinesic::kernel::{ROWS, TILE};
 use kinesic::model::{
     ALIGNMENT, HEADER_LEN, JointMeta, Kind, List, MAGIC, Metadata, ModelMeta, TensorMeta, TensorType, VERSION, checksum,
 };
 use serde::Serialize;
 
 use super::Provenance;
+use crate::quantise::IntegerLayer;
 
 /// Collects joints, models and tensors, and lays them out as a pack.
 #[derive(Debug)]
@@ -70,6 +71,21 @@ impl PackWriter {
     /// Adds a u16 tensor of `values.len() / columns` rows.
     pub fn u16s(&mut self, name: &str, columns: usize, values: &[u16]) {
         self.tensor(name, TensorType::U16, columns, values.len(), bytemuck::cast_slice(values));
+    }
+
+    /// Adds a layer with int8 weights, an i32 scale and an i32 bias a row: names of weights, scale, bias.
+    pub fn integer_layer(&mut self, [weights, scale, bias]: [&str; 3], layer: &IntegerLayer) {
+        let bytes = bytemuck::cast_slice(&layer.weights);
+        self.tensor(weights, TensorType::I8, TILE * TILE, layer.weights.len(), bytes);
+        for (name, values) in [(scale, &layer.multipliers), (bias, &layer.bias)] {
+            self.tensor(name, TensorType::I32, 1, values.len(), bytemuck::cast_slice(values));
+        }
+    }
+
+    /// Adds a tensor of another pack as it is there.
+    pub fn copy(&mut self, tensor: &TensorMeta, bytes: &[u8]) {
+        let [_, columns] = tensor.shape;
+        self.tensor(tensor.name, tensor.kind, columns as usize, tensor.len().unwrap_or(0), bytes);
     }
 
     /// Adds a row-major matrix in the tiled order of [`kinesic::kernel::Tiled`].

@@ -1,0 +1,5 @@
+//! Body mechanics, 31 joints, int8 weights: features, network and decoupling.
+#![no_std]
+#![no_main]
+
+kinesic_image::image!(kinesic_image::workloads::mechanics::Mechanics, "mechanics-i8.kin");

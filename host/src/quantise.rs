@@ -1,0 +1,199 @@
+//! From f32 packs to packs with int8 weights.
+
+use kinesic::kernel::{LARGEST_ACTIVATION, MOST_COLUMNS, PRE_ACTIVATION_BITS, ROWS, TILE};
+use kinesic::mechanics::{FEATURES, INPUT_SCALE, OUTPUT_BITS};
+use kinesic::model::{LoadError, TensorType};
+use kinesic::{Pack, Pose};
+
+use nalgebra::UnitQuaternion;
+use serde::Serialize;
+
+use crate::mechanics::decouple;
+use crate::pack::{PackFile, PackWriter, Provenance};
+use crate::rig::MAX_JOINTS;
+
+/// Largest size of a weight in int8.
+const LARGEST_WEIGHT: f64 = 127.0;
+
+/// A layer in the integers that [`kinesic::kernel::Quantised`] reads.
+#[derive(Clone, Debug)]
+pub struct IntegerLayer {
+    /// Tiles of 4 rows, columns in groups of four.
+    pub weights: Vec<i8>,
+    /// One a row, for the sum.
+    pub multipliers: Vec<i32>,
+    /// One a row, in units of the result.
+    pub bias: Vec<i32>,
+}
+
+/// Why a pack cannot be quantised.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum QuantiseError {
+    /// The pack does not load.
+    #[error(transparent)]
+    Load(#[from] LoadError),
+    /// Nothing in it has an int8 form.
+    #[error("the pack holds no body mechanics: found {found}")]
+    #[diagnostic(help("int8 is for networks; translators and components stay in f32"))]
+    NoNetwork {
+        /// What it holds.
+        found: String,
+    },
+    /// It is done already.
+    #[error("the weights of the pack are int8 already")]
+    #[diagnostic(help("quantise the f32 pack that it was made from"))]
+    Done,
+    /// A layer has more columns than sums can hold.
+    #[error("the layer {layer} has {found} columns, int32 sums hold at most {MOST_COLUMNS}")]
+    #[diagnostic(help("train a smaller network: --hidden, --code"))]
+    Columns {
+        /// Name of its tensor.
+        layer: &'static str,
+        /// Columns.
+        found: usize,
+    },
+    /// A weight or a bias too large for the fixed-point result.
+    #[error(
+        "row {row} of the layer {layer} has a weight or bias of size {found:.1}, too large for the fixed-point result"
+    )]
+    #[diagnostic(help("train with more weight decay, or keep the f32 pack"))]
+    Range {
+        /// Name of its tensor.
+        layer: &'static str,
+        /// The row.
+        row: usize,
+        /// Largest size in the row.
+        found: f32,
+    },
+}
+
+/// Rounds a row-major layer of `columns` inputs to int8 with a scale a row. `input` is the value of one unit of its integer input;
+/// results are in units of `2^-bits`.
+pub fn layer(
+    name: &'static str,
+    columns: usize,
+    weights: &[f32],
+    bias: &[f32],
+    input: f64,
+    bits: u32,
+) -> Result<IntegerLayer, QuantiseError> {
+    if columns > MOST_COLUMNS {
+        return Err(QuantiseError::Columns { layer: name, found: columns });
+    }
+    let groups = columns.div_ceil(TILE);
+    let mut out = vec![0; bias.len().div_ceil(TILE) * groups * TILE * TILE];
+    let (mut multipliers, mut biases) = (Vec::new(), Vec::new());
+    let unit = f64::from(1u32 << bits);
+    for (row, (weights, bias)) in weights.chunks_exact(columns.max(1)).zip(bias).enumerate() {
+        let largest = weights.iter().fold(0.0f32, |most, w| most.max(w.abs()));
+        let scale = f64::from(largest) / LARGEST_WEIGHT;
+        let multiplier = (scale * input * unit * 4_294_967_296.0).round();
+        let bias_units = (f64::from(*bias) * unit).round();
+        // Half of the range for the bias, so that it and the sum fit together.
+        if multiplier > f64::from(i32::MAX) || bias_units.abs() > f64::from(i32::MAX / 2) {
+            return Err(QuantiseError::Range { layer: name, row, found: largest.max(bias.abs()) });
+        }
+        multipliers.push(multiplier as i32);
+        biases.push(bias_units as i32);
+        for (column, weight) in weights.iter().enumerate() {
+            let rounded = if scale > 0.0 { (f64::from(*weight) / scale).round() as i8 } else { 0 };
+            // Bytes of a word are the columns 0, 2, 1, 3 of a group: see `kinesic_kernel_arch::Weights`.
+            let byte = [0, 2, 1, 3][column % TILE];
+            let word = (row / TILE * groups + column / TILE) * TILE + row % TILE;
+            out[word * TILE + byte] = rounded;
+        }
+    }
+    Ok(IntegerLayer { weights: out, multipliers, bias: biases })
+}
+
+/// Weights, scale and bias of a layer by name.
+struct Names {
+    weights: &'static str,
+    scale: &'static str,
+    bias: &'static str,
+}
+
+const LAYERS: [Names; 3] = [
+    Names { weights: "mechanics/hidden", scale: "mechanics/hidden_scale", bias: "mechanics/hidden_bias" },
+    Names { weights: "mechanics/code", scale: "mechanics/code_scale", bias: "mechanics/code_bias" },
+    Names { weights: "mechanics/decoder", scale: "mechanics/decoder_scale", bias: "mechanics/decoder_bias" },
+];
+
+/// The pack with int8 weights in its body-mechanics network. Everything else is copied bit for bit; nothing random.
+pub fn to_int8(file: &PackFile, provenance: &Provenance) -> Result<Vec<u8>, QuantiseError> {
+    let pack = file.pack()?;
+    let metadata = pack.metadata();
+    let Some(meta) = metadata.models.iter().find_map(|model| model.mechanics()) else {
+        let found = format!("{:?}", pack.kind()).to_lowercase();
+        return Err(QuantiseError::NoNetwork { found });
+    };
+    if pack.number(LAYERS[0].weights)? == TensorType::I8 {
+        return Err(QuantiseError::Done);
+    }
+    let (hidden, code) = (meta.hidden as usize, meta.code as usize);
+    let outputs = 4 * metadata.joints.len().saturating_sub(1);
+    let shapes = [(hidden, FEATURES), (code, hidden), (outputs, code)];
+    let activation = 1.0 / f64::from(LARGEST_ACTIVATION);
+    let units = [
+        (1.0 / f64::from(INPUT_SCALE), PRE_ACTIVATION_BITS),
+        (activation, PRE_ACTIVATION_BITS),
+        (activation, OUTPUT_BITS),
+    ];
+
+    let mut out = PackWriter::new(pack.kind(), metadata.name, metadata.frame_rate);
+    metadata.joints.iter().for_each(|joint| out.joint(joint.name, joint.parent));
+    metadata.models.iter().for_each(|model| out.model(&model));
+    let replaced = |name: &str| LAYERS.iter().any(|layer| name == layer.weights || name == layer.bias);
+    for tensor in metadata.tensors.iter().filter(|tensor| !replaced(tensor.name)) {
+        out.copy(&tensor, pack.bytes(&tensor).ok_or(LoadError::Metadata)?);
+    }
+    for ((names, (rows, columns)), (input, bits)) in LAYERS.iter().zip(shapes).zip(units) {
+        let weights = row_major(&pack, names.weights, rows, columns)?;
+        let bias: &[f32] = pack.slice(names.bias, rows)?;
+        let integer = layer(names.weights, columns, &weights, bias, input, bits)?;
+        out.integer_layer([names.weights, names.scale, names.bias], &integer);
+    }
+    Ok(out.finish(provenance))
+}
+
+/// A tiled matrix, untiled.
+fn row_major(pack: &Pack, name: &'static str, rows: usize, columns: usize) -> Result<Vec<f32>, LoadError> {
+    let tiles: &[[f32; ROWS]] = pack.slice(name, rows.div_ceil(ROWS) * columns)?;
+    let entry = |row: usize, column: usize| tiles[row / ROWS * columns + column][row % ROWS];
+    Ok((0..rows).flat_map(|row| (0..columns).map(move |column| entry(row, column))).collect())
+}
+
+/// How far the poses of two packs are apart: angle between the joints' rotations, all joints but the hips, degrees.
+#[derive(Clone, Debug, Serialize)]
+pub struct Difference {
+    /// Frames compared.
+    pub frames: usize,
+    /// Mean over frames and joints.
+    pub mean_deg: f64,
+    /// 99 % of the joints in all frames are nearer.
+    pub p99_deg: f64,
+    /// The farthest joint in any frame.
+    pub worst_deg: f64,
+}
+
+/// Steps both packs' body mechanics over the clips, through the device's code, and compares what they predict.
+pub fn difference(before: &Pack, after: &Pack, clips: &[Vec<Pose<MAX_JOINTS>>]) -> Result<Difference, LoadError> {
+    let joints = before.metadata().joints.len();
+    let (mut angles, mut frames) = (Vec::new(), 0);
+    for poses in clips {
+        frames += poses.len();
+        for (a, b) in decouple(before, poses)?.iter().zip(&decouple(after, poses)?) {
+            let pairs = a.mechanics.rotations.iter().zip(&b.mechanics.rotations).take(joints).skip(1);
+            // Of the rotation between them: exact for small angles, where an arc cosine is not.
+            let between = |(a, b): (&UnitQuaternion<f32>, &UnitQuaternion<f32>)| {
+                let between = a.cast::<f64>().inverse() * b.cast::<f64>();
+                2.0 * between.imag().norm().atan2(between.w.abs())
+            };
+            angles.extend(pairs.map(between).map(f64::to_degrees));
+        }
+    }
+    angles.sort_by(f64::total_cmp);
+    let mean_deg = angles.iter().sum::<f64>() / angles.len().max(1) as f64;
+    let p99_deg = angles.get(angles.len() * 99 / 100).copied().unwrap_or(0.0);
+    Ok(Difference { frames, mean_deg, p99_deg, worst_deg: angles.last().copied().unwrap_or(0.0) })
+}
