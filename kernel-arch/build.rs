@@ -18,8 +18,14 @@ fn main() {
     if target.starts_with("thumbv7em")
         || (target.starts_with("thumbv8m.main") && WITH_DSP.iter().any(|name| cpu(&name)))
     {
-        println!("cargo::rustc-cfg=kinesic_tile=\"dsp\"");
+        choose("dsp");
     } else if target.starts_with("thumbv6m") {
-        println!("cargo::rustc-cfg=kinesic_tile=\"thumb1\"");
+        choose("thumb1");
     }
+}
+
+/// The name alone too: `cfg(kinesic_tile)` does not hold for a name with a value.
+fn choose(tile: &str) {
+    println!("cargo::rustc-cfg=kinesic_tile");
+    println!("cargo::rustc-cfg=kinesic_tile=\"{tile}\"");
 }

@@ -1,14 +1,14 @@
 //! From f32 packs to packs with int8 weights.
 
 use kinesic::kernel::{LARGEST_ACTIVATION, MOST_COLUMNS, PRE_ACTIVATION_BITS, ROWS, TILE};
-use kinesic::mechanics::{FEATURES, INPUT_SCALE, OUTPUT_BITS};
+use kinesic::mechanics::{Decoupled, FEATURES, INPUT_SCALE, OUTPUT_BITS};
 use kinesic::model::{LoadError, TensorType};
-use kinesic::{Pack, Pose};
+use kinesic::{MechanicsState, Pack, Pose};
 
 use nalgebra::UnitQuaternion;
 use serde::Serialize;
 
-use crate::mechanics::decouple;
+use crate::mechanics::HostMechanics;
 use crate::pack::{PackFile, PackWriter, Provenance};
 use crate::rig::MAX_JOINTS;
 
@@ -176,14 +176,23 @@ pub struct Difference {
     pub worst_deg: f64,
 }
 
-/// Steps both packs' body mechanics over the clips, through the device's code, and compares what they predict.
+/// Steps the features over the clips and compares what the two networks predict of them, through the device's code: the
+/// networks' raw output, before decoupling, which hides most of the difference.
 pub fn difference(before: &Pack, after: &Pack, clips: &[Vec<Pose<MAX_JOINTS>>]) -> Result<Difference, LoadError> {
     let joints = before.metadata().joints.len();
     let (mut angles, mut frames) = (Vec::new(), 0);
+    let (first, second) = (HostMechanics::load(before)?, HostMechanics::load(after)?);
+    let mut state = Box::new(MechanicsState::new());
+    let mut parts = Decoupled::identity();
+    let (mut a, mut b) = (Pose::identity(), Pose::identity());
     for poses in clips {
         frames += poses.len();
-        for (a, b) in decouple(before, poses)?.iter().zip(&decouple(after, poses)?) {
-            let pairs = a.mechanics.rotations.iter().zip(&b.mechanics.rotations).take(joints).skip(1);
+        *state = MechanicsState::new();
+        for pose in poses {
+            first.step(&mut state, pose, &mut parts);
+            first.predict(state.features(), state.pose(), &mut a);
+            second.predict(state.features(), state.pose(), &mut b);
+            let pairs = a.rotations.iter().zip(&b.rotations).take(joints).skip(1);
             // Of the rotation between them: exact for small angles, where an arc cosine is not.
             let between = |(a, b): (&UnitQuaternion<f32>, &UnitQuaternion<f32>)| {
                 let between = a.cast::<f64>().inverse() * b.cast::<f64>();
