@@ -16,7 +16,11 @@ fn main() {
         flags.contains(&format!("target-cpu={name}")) && !flags.contains("nodsp") && !flags.contains("-dsp")
     };
     if target.starts_with("thumbv7em")
+<<<<<<< HEAD
         || (target.starts_with("thumbv8m.main") && WITH_DSP.iter().any(cpu))
+=======
+        || (target.starts_with("thumbv8m.main") && WITH_DSP.iter().any(|name| cpu(&name)))
+>>>>>>> 1faec6909a5f937f1beef925f946774fda6a3194
     {
         choose("dsp");
     } else if target.starts_with("thumbv6m") {
