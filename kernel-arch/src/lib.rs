@@ -1,6 +1,6 @@
 //! Four rows of an int8 matrix times a vector of int16: the inner loop of kinesic's quantised networks.
 //!
-//! [`portable::tile`] is the definition, in safe Rust. On ARMv7E-M and on ARMv8-M with the DSP extension [`tile`] is a loop
+//! [`portable::tile`] is the definition, in safe Rust. On ARMv7E-M [`tile`] is a loop
 //! around SMLAD, on ARMv6-M one around MULS, both in assembly, because the compiler finds neither; on every other core it is the
 //! portable loop. The bits are the same: all arithmetic is modulo 2^32. Without the feature `asm` the portable loop is used
 //! everywhere and the crate holds no unsafe code.
