@@ -70,7 +70,7 @@ fn face(pack: &Pack, frames: &mut Frames) {
     let mut offsets = [[0.0; 2]; POINTS];
     for _ in 0..STEPS {
         state.change = frames.control();
-        let odd = frames.next() % 8 == 0;
+        let odd = frames.next().is_multiple_of(8);
         let mut number = || if odd { frames.control() } else { 100.0 * frames.unit() };
         let landmarks = [(); POINTS].map(|()| [number(), number()]);
         model.step(&mut state, &landmarks, &mut offsets);
