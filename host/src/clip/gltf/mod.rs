@@ -7,7 +7,7 @@
 //! | animation | one key a frame at `frame / rate` s, from 0 to [`Clip::duration`], linear; a rotation for every joint |
 //! | root motion | the translation of node 0, in the world; nothing else moves |
 //! | quaternions | `x y z w`, of the two signs the one nearer to the frame before |
-//! | body | one octahedron a bone, all of one mesh, skinned to the joints ([`bones`]) |
+//! | body | one octahedron a bone, all of one mesh, skinned to the joints (`bones`) |
 //! | `asset.extras` | `frame_rate`, `frames`, `duration_s`, `unit`, `root_motion` |
 //!
 //! `.glb` holds the numbers as a binary chunk, `.gltf` as base64 in the JSON: one file in both cases.
