@@ -6,6 +6,7 @@
 mod components;
 mod face;
 mod kernel;
+mod limit;
 mod mechanics;
 pub mod recorded;
 mod translator;
@@ -83,6 +84,7 @@ const ALL: &[(&str, Make)] = &[
     ("mechanics", mechanics::prepare),
     ("mechanics-i8", mechanics::int8),
     ("components", components::prepare),
+    ("limit", limit::prepare),
     ("face", face::prepare),
     ("kernel-f32", kernel::f32),
     ("kernel-i8", kernel::i8),

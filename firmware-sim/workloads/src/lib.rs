@@ -9,6 +9,7 @@ mod digest;
 pub mod face;
 mod frames;
 pub mod kernel;
+pub mod limit;
 pub mod mechanics;
 pub mod pose;
 pub mod translator;

@@ -1,0 +1,5 @@
+//! Joint limits of a pose, 23 joints of all kinds.
+#![no_std]
+#![no_main]
+
+kinesic_image::image!(kinesic_image::workloads::limit::Limit, "limit.kin");

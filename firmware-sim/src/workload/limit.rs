@@ -1,0 +1,33 @@
+//! Joint limits on a made walk: elbows and knees are hinges, shoulders and hips chains of three servos, other joints balls. The
+//! limits are tight enough that a walk runs into them.
+
+use kinesic_host::limit::{JointLimit, LimitsModel};
+use kinesic_host::pack::Provenance;
+use kinesic_workloads::limit::{JOINTS, Limit};
+
+use super::translator::numbers;
+use super::{Prepared, WorkloadError, on_host};
+use crate::made::{self, FRAME_RATE};
+
+const SEED: u64 = 3;
+const X: [f32; 3] = [1.0, 0.0, 0.0];
+const Y: [f32; 3] = [0.0, 1.0, 0.0];
+const Z: [f32; 3] = [0.0, 0.0, 1.0];
+
+pub fn prepare(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
+    let rig = made::short_rig();
+    let mut model = LimitsModel::free("made", FRAME_RATE, rig.joints(), 6.0, 60.0);
+    for (limit, joint) in model.joints.iter_mut().zip(&rig.skeleton.joints).skip(1) {
+        let is = |ends: &[&str]| ends.iter().any(|end| joint.name.ends_with(end));
+        *limit = if is(&["ForeArm", "tLeg"]) && !is(&["UpLeg"]) {
+            JointLimit::hinge(X, [-0.3, 0.4], 3.0, 30.0)
+        } else if is(&["tArm", "UpLeg"]) {
+            JointLimit::chain([X, Y, Z], [-0.3; 3], [0.3; 3], 3.0, 30.0)
+        } else {
+            JointLimit::ball([Y, Z, X], [-0.2; 3], [0.2; 3], 3.0, 30.0)
+        };
+    }
+    let provenance = Provenance { tool: "kinesic-firmware-sim".to_owned(), seed: SEED, ..Provenance::default() };
+    let walk = made::walk_on(&rig.skeleton, frames, SEED);
+    on_host::<Limit>(name, "limit.kin", model.pack(&rig, &provenance), &numbers(&rig, &walk, JOINTS))
+}
