@@ -12,7 +12,7 @@ pub fn vectorised<W: Work>(work: W) -> W::Output {
 }
 
 /// `a' b` over the shorter length, summed in eight lanes: the same bits with vectors of any width.
-#[inline]
+#[inline(always)]
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     let (wide_a, rest_a) = a.as_chunks::<8>();
     let (wide_b, rest_b) = b.as_chunks::<8>();

@@ -6,19 +6,16 @@
 //! | [`mod@rank`] | the ranking function: primal Newton over a graph of pairs; faces use it too |
 //! | `pairs`, [`choose_cost`] | which motion shows more than which; the cost by validation |
 //! | [`mod@regress`], `hidden` | strength -> features: ten tanh units, the output layer eliminated |
-//! | [`mod@pca`] | principal components of keyframes |
 
 mod choose;
 mod hidden;
 pub mod pairs;
-pub mod pca;
 pub mod rank;
 pub mod regress;
 mod samples;
 
 pub use choose::{Choice, choose_cost};
 pub use pairs::{Pairs, pair_accuracy, spearman};
-pub use pca::{Pca, pca};
 pub use rank::{RankOptions, Ranked, rank};
 pub use regress::{RegressOptions, Regressed, Regression, regress};
 pub use samples::Samples;

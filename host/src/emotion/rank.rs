@@ -5,7 +5,8 @@
 //! exists: gradient and Hessian are `X'` times a vector over the samples, which the pairs fill.
 
 use super::pairs::Pairs;
-use super::samples::{Samples, add_scaled, dot};
+use super::samples::{Samples, add_scaled};
+use crate::vector::dot;
 use crate::vector::vectorised;
 
 /// How to minimise.

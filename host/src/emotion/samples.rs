@@ -2,10 +2,7 @@
 
 use faer::MatRef;
 
-use crate::vector::vectorised;
-
-/// Sums of a product that run side by side: one order of summation, whatever the machine.
-const LANES: usize = 8;
+use crate::vector::{dot, vectorised};
 
 /// Samples, row-major `[rows x columns]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,20 +67,6 @@ impl<'a> Samples<'a> {
         mean.iter_mut().for_each(|m| *m /= self.rows().max(1) as f64);
         mean
     }
-}
-
-/// `sum a b` over the shorter length.
-#[inline(always)]
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut lanes = [0.0; LANES];
-    let ((a, rest_a), (b, rest_b)) = (a.as_chunks::<LANES>(), b.as_chunks::<LANES>());
-    for (a, b) in a.iter().zip(b) {
-        for ((lane, a), b) in lanes.iter_mut().zip(a).zip(b) {
-            *lane += a * b;
-        }
-    }
-    let rest: f64 = rest_a.iter().zip(rest_b).map(|(a, b)| a * b).sum();
-    lanes.iter().sum::<f64>() + rest
 }
 
 /// `to += factor from`.

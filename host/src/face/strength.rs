@@ -10,6 +10,7 @@ use rand::rngs::ChaCha8Rng;
 
 use super::shape::region_local;
 use crate::emotion::{Pairs, RankOptions, Samples, choose_cost, rank};
+use crate::vector::dot;
 
 /// Pairs that a function is fitted on at most, drawn from all: more change nothing that the faces can tell.
 const PAIRS: [usize; 2] = [200_000, 20_000];
@@ -151,10 +152,6 @@ fn thinned(pairs: Pairs, most: usize, seed: u64) -> Pairs {
     let first = draw(Pairs { ordered: pairs.ordered, similar: Vec::new() }, ordered);
     let second = draw(Pairs { ordered: Vec::new(), similar: pairs.similar }, similar);
     Pairs { ordered: first.ordered, similar: second.similar }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// `None` for scores that are all the same.
