@@ -81,11 +81,10 @@ bench_peers() {
     need python3 "apt-get install python3 python3-venv"
     [ -x "$work/bin/python" ] || python3 -m venv "$work"
     "$work/bin/pip" install --quiet --requirement benches/peers/requirements.txt
-    cargo build --release --locked -p kinesic-benches --bins
-    cargo build --release --locked -p kinesic-host --example components_bench
+    cargo build --release --locked -p kinesic-benches -p kinesic-host --bins
     "$work/bin/python" benches/peers/host.py target/release/host-jobs "$work/jobs"
-    "$work/bin/python" benches/peers/components.py target/release/examples/components_bench "$work/jobs"
-    cargo build --release --locked -p kinesic-host --bins
+    "$work/bin/python" benches/peers/emotion.py target/release/host-jobs "$work/jobs"
+    "$work/bin/python" benches/peers/components.py target/release/components-bench "$work/jobs"
     "$work/bin/python" benches/peers/faces.py target/release/kinesic "$work/faces"
 }
 

@@ -5,7 +5,8 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 data=$(realpath "${KINESIC_DATA:-../shared/data}")
 export KINESIC_DATA=$data
-cargo build --release --locked -q -p kinesic-host --bins --examples
+cargo build --release --locked -q -p kinesic-host --bins --example contact_sheet
+cargo build --release --locked -q -p kinesic-benches --bin components-bench
 target=${CARGO_TARGET_DIR:-target}/release
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -26,7 +27,7 @@ for table in "${@:-penalty explained transfer count curve sheet}"; do
             "$target/examples/contact_sheet" docs/components/old.png 10 \
                 "$data/cmu31/07_01.bvh" "$data/m21/style/OLD-1.bvh" "$work/old.bvh"
             ;;
-        *) "$target/examples/components_bench" "$table" ;;
+        *) "$target/components-bench" "$table" ;;
         esac
     done
 done

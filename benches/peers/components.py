@@ -1,30 +1,29 @@
 """Peers of style components, on the same inputs in one run: scikit-learn's SparsePCA, SPLOCS' algorithm (Neumann 2013,
 written here in NumPy from the paper), thinned principal components, and PyTorch for the style learning. One thread.
 
-    python -m venv V && V/bin/pip install numpy scipy scikit-learn torch
-    V/bin/python benches/peers/components.py target/release/examples/components_bench WORK [factor|learn]
+    ./ci.sh bench-peers            makes the virtual environment and runs this
+    python benches/peers/components.py target/release/components-bench WORK [made|factor|learn]...
 """
 
 import csv
 import os
-import statistics
 import subprocess
 import sys
-import time
-import warnings
+from collections import namedtuple
 
-for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-    os.environ[name] = "1"
+from measure import arguments, head, row, timed  # first: it sets the number of threads
 
-# Set on some machines for old OpenBLAS builds; they slow the peers down.
-for name in ("OPENBLAS_CORETYPE", "OPENBLAS_L2_SIZE"):
-    os.environ.pop(name, None)
+import numpy as np
+from sklearn.decomposition import SparsePCA
 
-import numpy as np  # noqa: E402
-
-warnings.filterwarnings("ignore")
 ALPHAS = (0.1, 0.3, 1.0, 2.0, 4.0, 8.0)
 LAMBDAS = (0.03, 0.1, 0.3, 1.0, 3.0, 10.0)
+COUNTS = (10, 30, 50)
+DENSITIES = (0.05, 0.08, 0.12, 0.2, 0.3, 0.5)
+CLIPS = range(10)
+# The made motion.
+MADE = 10
+Point = namedtuple("Point", "method motion count wanted density error seconds")
 
 
 def refit(M, support, C, rounds=60):
@@ -92,55 +91,98 @@ def splocs(M, K, lam, iterations=20, admm=10):
     return C
 
 
-def factor(bench, work):
-    subprocess.run([bench, "factor", work], check=True)
-    from sklearn.decomposition import SparsePCA
-    rows = list(csv.DictReader(open(os.path.join(work, "ours.csv"))))
-    clips = sorted({int(r["clip"]) for r in rows})
-    counts = sorted({int(r["components"]) for r in rows})
-    points = []  # method, clip, K, density, error, ms
-    motions = {i: np.loadtxt(os.path.join(work, f"motion{i}.csv"), delimiter=",") for i in clips}
-    for row in rows:
-        M = motions[int(row["clip"])]
-        C = np.loadtxt(os.path.join(work, row["file"]), delimiter=",")
-        S = support_of(C)
-        points.append((row["method"], int(row["clip"]), int(row["components"]), S.mean(), refit(M, S, C), float(row["milliseconds"])))
-    for clip in clips:
-        M = motions[clip]
-        for K in counts:
-            for alpha in ALPHAS:
-                start = time.process_time()
-                model = SparsePCA(K, alpha=alpha, random_state=0, max_iter=200, tol=1e-4)
-                model.fit(M)
-                ms = 1e3 * (time.process_time() - start)
-                S = support_of(model.components_)
-                if S.any():
-                    points.append(("sklearn", clip, K, S.mean(), refit(M, S, model.components_), ms))
-            for lam in LAMBDAS:
-                start = time.process_time()
-                C = splocs(M, K, lam)
-                ms = 1e3 * (time.process_time() - start)
-                S = support_of(C)
-                if S.any():
-                    points.append(("splocs", clip, K, S.mean(), refit(M, S, C), ms))
-        print("clip", clip, "done", file=sys.stderr, flush=True)
+def bench(*arguments):
+    return subprocess.run([sys.argv[1], *arguments], check=True, capture_output=True, text=True).stdout
 
-    def at(method, clip, K, density):
+
+def motions():
+    bench("motions", sys.argv[2])
+    return [np.loadtxt(os.path.join(sys.argv[2], f"motion{i}.csv"), delimiter=",") for i in (*CLIPS, MADE)]
+
+
+def point(M, method, motion, count, wanted, C, seconds):
+    S = support_of(C)
+    return [Point(method, motion, count, wanted, S.mean(), refit(M, S, C), seconds)] if S.any() else []
+
+
+def peers(M, motion, count, once, **options):
+    """SparsePCA and SPLOCS over their penalties."""
+    points = []
+    for method, weights, fit in (("sklearn", ALPHAS, lambda w: SparsePCA(count, alpha=w, random_state=0, **options).fit(M).components_),
+                                 ("splocs", LAMBDAS, lambda w: splocs(M, count, w))):
+        for weight in weights:
+            seconds, C = once(lambda: fit(weight))
+            points += point(M, method, motion, count, None, C, seconds)
+    return points
+
+
+def ours(motions, wanted):
+    """Our factors at wanted densities, and the strongest groups of the principal components."""
+    with open(os.path.join(sys.argv[2], "wanted.csv"), "w", newline="") as file:
+        csv.writer(file).writerows(wanted)
+    bench("factor", sys.argv[2])
+    points = []
+    for line in csv.DictReader(open(os.path.join(sys.argv[2], "ours.csv"))):
+        C = np.loadtxt(os.path.join(sys.argv[2], line["file"]), delimiter=",")
+        motion, count = int(line["motion"]), int(line["components"])
+        points += point(motions[motion], line["method"], motion, count, float(line["wanted"]), C, float(line["seconds"]))
+    return points
+
+
+def beside(points, motions, count):
+    """SparsePCA's runs, and for each the fastest of ours that is at least as sparse and at least as exact, or none."""
+    for peer in points:
+        if peer.method == "sklearn" and peer.count == count and peer.motion in motions:
+            reach = [p for p in points if (p.method, p.motion, p.count) == ("kinesic", peer.motion, count)
+                     and p.density <= peer.density + 1e-9 and p.error <= peer.error]
+            yield peer, min(reach, key=lambda p: p.seconds, default=None)
+
+
+def wanted(points):
+    """The very densities of SparsePCA's runs, and a little more room."""
+    return [(p.motion, p.count, p.density) for p in points if p.method == "sklearn"]
+
+
+def made():
+    """The made motion; SparsePCA as its defaults are."""
+    count, all_motions = 25, motions()
+    M = all_motions[MADE]
+    points = peers(M, MADE, count, timed)
+    points += ours(all_motions, wanted(points))
+    head(f"Sparse components, made, {M.shape[0]} x {M.shape[1]}, K = {count}, SparsePCA at its defaults", "SparsePCA's density",
+         "its error", "kinesic's density", "error", "SparsePCA, s", "kinesic, s", "ratio")
+    for peer, us in beside(points, [MADE], count):
+        cells = (f"{us.density:.3f}", f"{us.error:.4f}", f"{peer.seconds:.3f}", f"{us.seconds:.5f}",
+                 f"{peer.seconds / us.seconds:.0f}") if us else ("-", "-", f"{peer.seconds:.3f}", "-", "-")
+        row(f"{peer.density:.3f}", f"{peer.error:.4f}", *cells)
+    print("\nSPLOCS:", ", ".join(f"density {p.density:.3f}, error {p.error:.4f}, {p.seconds:.3f} s" for p in points if p.method == "splocs"))
+
+
+def factor():
+    all_motions, points = motions(), []
+    for clip in CLIPS:
+        for count in COUNTS:
+            points += peers(all_motions[clip], clip, count, lambda job: timed(job, runs=0), max_iter=200, tol=1e-4)
+        print("clip", clip, "done", file=sys.stderr, flush=True)
+    points += ours(all_motions, [(clip, count, d) for clip in CLIPS for count in COUNTS for d in DENSITIES] + wanted(points))
+
+    def at(method, clip, count, density):
         """log error at a density, between the two nearest points; None outside what the method reached."""
-        curve = sorted((d, e) for m, c, k, d, e, _ in points if (m, c, k) == (method, clip, K))
+        curve = sorted((p.density, p.error) for p in points if (p.method, p.motion, p.count) == (method, clip, count)
+                       and p.wanted in (None, *DENSITIES))
         if not curve or density < curve[0][0] - 1e-9 or density > curve[-1][0] + 1e-9:
             return None
         best = np.minimum.accumulate([e for _, e in curve])
         return float(np.exp(np.interp(density, [d for d, _ in curve], np.log(np.maximum(best, 1e-6)))))
 
     methods = ("kinesic", "pca", "sklearn", "splocs")
-    print("| K | density | clips | kinesic | thinned PCA | SparsePCA | SPLOCS | no worse than the best |")
-    print("|---|---|---|---|---|---|---|---|")
-    for K in counts:
-        for density in (0.05, 0.08, 0.12, 0.2, 0.3, 0.5):
+    head("Sparse components, ten clips: error at a density", "K", "density", "clips", "kinesic", "thinned PCA", "SparsePCA", "SPLOCS",
+         "no worse than the best")
+    for count in COUNTS:
+        for density in DENSITIES:
             cells, wins, compared = {m: [] for m in methods}, 0, 0
-            for clip in clips:
-                values = {m: at(m, clip, K, density) for m in methods}
+            for clip in CLIPS:
+                values = {m: at(m, clip, count, density) for m in methods}
                 if values["kinesic"] is None or values["sklearn"] is None:
                     continue
                 compared += 1
@@ -149,31 +191,23 @@ def factor(bench, work):
                 for m, v in values.items():
                     if v is not None:
                         cells[m].append(v)
-            mean = {m: f"{np.mean(v):.4f}" if v else "-" for m, v in cells.items()}
             if compared:
-                print(f"| {K} | {density} | {compared} | {mean['kinesic']} | {mean['pca']} | {mean['sklearn']} | {mean['splocs']} | {wins} of {compared} |")
-    print()
-    print("| K | kinesic, ms | SparsePCA, ms | SPLOCS, ms | SparsePCA / kinesic |")
-    print("|---|---|---|---|---|")
-    for K in counts:
-        # At SparsePCA's density and no larger error: the fastest of ours that reaches both.
-        ratios, ours, theirs = [], [], []
-        for m, clip, k, density, error, ms in points:
-            if (m, k) != ("sklearn", K):
-                continue
-            reach = [(t, d, e) for mm, c, kk, d, e, t in points if (mm, c, kk) == ("kinesic", clip, K) and d <= density + 1e-9 and e <= error]
-            theirs.append(ms)
-            if reach:
-                t = min(reach)[0]
-                ours.append(t)
-                ratios.append(ms / t)
-        peer = statistics.median(ms for m, _, k, _, _, ms in points if (m, k) == ("splocs", K))
-        print(f"| {K} | {statistics.median(ours):.1f} | {statistics.median(theirs):.0f} | {peer:.0f} | median {statistics.median(ratios):.0f}, least {min(ratios):.0f}, reached in {len(ratios)} of {len(theirs)} |")
+                means = (f"{np.mean(cells[m]):.4f}" if cells[m] else "-" for m in methods)
+                row(count, density, compared, *means, f"{wins} of {compared}")
+    head("Time", "K", "kinesic, ms", "SparsePCA, ms", "SPLOCS, ms", "SparsePCA / kinesic: median", "a tenth is below", "least",
+         "at its density and error or better")
+    for count in COUNTS:
+        pairs = list(beside(points, CLIPS, count))
+        found = [(peer.seconds, us.seconds) for peer, us in pairs if us]
+        ratios = [theirs / own for theirs, own in found]
+        splocs_ms = np.median([p.seconds for p in points if (p.method, p.count) == ("splocs", count)])
+        row(count, *(f"{1e3 * t:.1f}" for t in (np.median([u for _, u in found]), np.median([p.seconds for p, _ in pairs]), splocs_ms)),
+            *(f"{r:.0f}" for r in (np.median(ratios), np.quantile(ratios, 0.1), min(ratios))), f"{len(found)} of {len(pairs)} runs")
 
 
-def learn(bench, work):
-    out = subprocess.run([bench, "learn", work], check=True, capture_output=True, text=True).stdout
-    _, seconds, value = out.strip().split(",")
+def learn():
+    work = sys.argv[2]
+    _, seconds, value = bench("learn", work).strip().split(",")
     import torch
     torch.set_num_threads(1)
     load = lambda n: torch.tensor(np.loadtxt(os.path.join(work, n + ".csv"), delimiter=",", ndmin=2), dtype=torch.float32)
@@ -192,21 +226,13 @@ def learn(bench, work):
             adam.step()
         return float(value.detach())
 
-    times, last = [], 0.0
-    for _ in range(5):
-        begin = time.process_time()
-        last = run()
-        times.append(time.process_time() - begin)
-    theirs = statistics.median(times)
-    print("| 500 Adam steps, K = 30 | processor seconds (median of 5) | objective |")
-    print("|---|---|---|")
-    print(f"| kinesic, f64 | {float(seconds):.3f} | {float(value):.4f} |")
-    print(f"| PyTorch {torch.__version__}, f32, one thread | {theirs:.3f} | {last:.4f} |")
-    print(f"| ratio | {theirs / float(seconds):.1f} | |")
+    theirs, last = timed(run)
+    head("500 Adam steps, K = 30", "", "processor seconds", "objective")
+    row("kinesic, f64", f"{float(seconds):.3f}", f"{float(value):.4f}")
+    row(f"PyTorch {torch.__version__}, f32, one thread", f"{theirs:.3f}", f"{last:.4f}")
+    row("ratio", f"{theirs / float(seconds):.1f}", "")
 
 
 if __name__ == "__main__":
-    bench, work = sys.argv[1:3]
-    for job in sys.argv[3:] or ("factor", "learn"):
-        {"factor": factor, "learn": learn}[job](bench, work)
-        print()
+    for job in arguments(__doc__, {"made": made, "factor": factor, "learn": learn}):
+        job()

@@ -6,56 +6,12 @@
 Each figure is the median of five runs after one that warms up (the peers' just-in-time compilers included).
 """
 
-import json
-import os
-import statistics
-import subprocess
-import sys
-import time
-import warnings
+from measure import arguments, head, numbers, ours, row, timed  # first: it sets the number of threads
 
-for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS", "RAYON_NUM_THREADS"):
-    os.environ[name] = "1"
-# Set on some machines for old OpenBLAS builds; they slow the peers down.
-for name in ("OPENBLAS_CORETYPE", "OPENBLAS_L2_SIZE"):
-    os.environ.pop(name, None)
-
-import numba  # noqa: E402
-import numpy as np  # noqa: E402
-from scipy.linalg import solveh_banded  # noqa: E402
-from scipy.spatial.distance import cdist  # noqa: E402
-
-warnings.filterwarnings("ignore")
-RUNS = 5
-
-
-def ours(job, scale=1.0):
-    folder = os.path.join(WORK, job)
-    os.makedirs(folder, exist_ok=True)
-    figures = json.loads(subprocess.check_output([JOBS, job, folder, str(scale)], text=True))
-    figures["median"] = statistics.median(figures["seconds"])
-    return folder, figures
-
-
-def timed(job):
-    """Median processor seconds of RUNS runs, and the last result."""
-    result, seconds = job(), []
-    for _ in range(RUNS):
-        start = time.process_time()
-        result = job()
-        seconds.append(time.process_time() - start)
-    return statistics.median(seconds), result
-
-
-def row(*cells):
-    print("| " + " | ".join(str(cell) for cell in cells) + " |", flush=True)
-
-
-def head(title, *cells):
-    print(f"\n{title}\n")
-    row(*cells)
-    row(*["---"] * len(cells))
-
+import numba
+import numpy as np
+from scipy.linalg import solveh_banded
+from scipy.spatial.distance import cdist
 
 # Motion warping: dynamic time warping compiled by numba over distances by scipy, the space warp by scipy's banded solver.
 
@@ -142,7 +98,7 @@ def align():
          "kinesic, MiB", "energy / full search's")
     for scale in (1.0, 6000 / 1400):
         folder, figures = ours("align", scale)
-        u, v = (np.fromfile(f"{folder}/{x}.f64").reshape(-1, figures["channels"]) for x in "uv")
+        u, v = (numbers(folder, f"{x}.f64", figures["channels"]) for x in "uv")
         seconds, _ = timed(lambda: motion_warping(u, v, figures))
         row(figures["frames"], f"{figures['median']:.3f}", f"{seconds:.2f}", f"{seconds / figures['median']:.1f}",
             f"{figures['peak_mib']:.0f}", f"{figures['energy'] / figures['full_search_energy']:.5f}")
@@ -152,9 +108,11 @@ def align():
 
 
 def fit(y, found, settle):
-    """100 (1 - |y - found| / |y - mean|), %, mean over the outputs."""
+    """100 (1 - |y - found| / |y - mean|), %, mean over the outputs; minus infinity for what grows beyond all bounds."""
     y, found = y[settle:], found[settle:]
-    return float(np.mean(100 * (1 - np.linalg.norm(y - found, axis=0) / np.linalg.norm(y - y.mean(0), axis=0))))
+    with np.errstate(all="ignore"):
+        shares = 100 * (1 - np.linalg.norm(y - found, axis=0) / np.linalg.norm(y - y.mean(0), axis=0))
+    return float(np.mean(shares)) if np.isfinite(shares).all() else -np.inf
 
 
 def simulate(A, B, C, D, u):
@@ -185,25 +143,39 @@ def nfoursid(u, y, order):
     return model.a, model.b, model.c, model.d
 
 
+def judged(folder, figures, method):
+    """Seconds, fit on unseen frames (none if it diverges), and spectral radius of a peer's model."""
+    u, y = (numbers(folder, f"{x}.f64", 3) for x in "uy")
+    frames = figures["frames"]
+    seconds, model = timed(lambda: method(u[:frames], y[:frames], figures["order"]))
+    return seconds, fit(y[frames:], simulate(*model, u[frames:]), figures["settle"]), np.abs(np.linalg.eigvals(model[0])).max()
+
+
+PEERS = (("SIPPY N4SID", sippy), ("nfoursid", nfoursid))
+
+
 def identify():
-    head("Identification, order 40, 3 inputs, 3 outputs, fit on unseen frames", "pair", "method", "s",
-         "kinesic is faster", "fit, %", "spectral radius")
-    for job in ("identify", "identify-real"):
-        folder, figures = ours(job)
-        u, y = (np.fromfile(f"{folder}/{x}.f64").reshape(-1, 3) for x in "uy")
-        frames = figures["frames"]
-        label = f"{'made' if job == 'identify' else 'recorded'}, {frames} frames"
-        row(label, "kinesic", f"{figures['median']:.4f}", "", f"{figures['fit']:.1f}", f"{figures['radius']:.3f}")
-        for name, method in (("SIPPY N4SID", sippy), ("nfoursid", nfoursid)):
-            try:
-                seconds, model = timed(lambda: method(u[:frames], y[:frames], figures["order"]))
-            except Exception as error:  # A peer that gives up is a result.
-                row(label, name, "-", "-", f"failed: {type(error).__name__}: {str(error)[:60]}", "-")
-                continue
-            quality = fit(y[frames:], simulate(*model, u[frames:]), figures["settle"])
-            radius = np.abs(np.linalg.eigvals(model[0])).max()
-            row(label, name, f"{seconds:.3f}", f"{seconds / figures['median']:.0f} times",
-                f"{quality:.1f}" if np.isfinite(quality) else "diverges", f"{radius:.3f}")
+    head("Identification, order 40, 3 inputs, 3 outputs: a made system", "method", "s", "kinesic is faster", "fit, %",
+         "spectral radius")
+    folder, figures = ours("identify")
+    row(f"kinesic, {figures['frames']} frames", f"{figures['median']:.4f}", "", f"{figures['fit']:.2f}", f"{figures['radius']:.3f}")
+    for name, method in PEERS:
+        seconds, quality, radius = judged(folder, figures, method)
+        row(name, f"{seconds:.3f}", f"{seconds / figures['median']:.0f} times", f"{quality:.2f}", f"{radius:.3f}")
+
+    folder, pairs = ours("identify-real")
+    head("Recorded pairs: fit, %", "method", *(f"{style}, {p['frames']}" for style, p in pairs.items()), "median", "unstable",
+         "s, median", "kinesic is faster")
+    least = np.median([p["median"] for p in pairs.values()])
+
+    def show(name, found, faster):
+        seconds, fits, radii = np.array(found).T
+        row(name, *(f"{f:.1f}" if f > -100 else "diverges" for f in fits), f"{np.median(fits):.1f}", int((radii >= 1).sum()),
+            f"{np.median(seconds):.4f}", f"{np.median(seconds) / least:.1f} times" if faster else "")
+
+    show("kinesic", [(p["median"], p["fit"], p["radius"]) for p in pairs.values()], False)
+    for name, method in PEERS:
+        show(name, [judged(f"{folder}/{style}", p, method) for style, p in pairs.items()], True)
 
 
 # Autoencoder.
@@ -214,9 +186,8 @@ def autoencoder():
     torch.set_num_threads(1)
     folder, figures = ours("autoencoder")
     width, hidden, batch = figures["width"], figures["hidden"], figures["batch"]
-    data, test = (torch.from_numpy(np.fromfile(f"{folder}/{x}.f32", np.float32).reshape(-1, width))
-                  for x in ("data", "test"))
-    start = [np.fromfile(f"{folder}/start-{k}.f32", np.float32) for k in range(4)]
+    data, test = (torch.from_numpy(numbers(folder, f"{x}.f32", width, np.float32)) for x in ("data", "test"))
+    start = [numbers(folder, f"start-{k}.f32", kind=np.float32) for k in range(4)]
     shapes = [(hidden, width), (hidden,), (width, hidden), (width,)]
 
     def epoch():
@@ -248,7 +219,7 @@ def autoencoder():
 
 def growth():
     head("How cost grows", "job", "1x, s", "4x, s", "16x, s", "exponent", "1x, MiB", "4x, MiB", "16x, MiB", "exponent")
-    for job in ("align", "identify", "autoencoder"):
+    for job in ("align", "identify", "autoencoder", "rank", "regress", "pca"):
         # 16 times as many frames than a quarter of the table's job.
         found = [ours(job, scale)[1] for scale in (0.25, 1.0, 4.0)]
         cells = []
@@ -260,9 +231,5 @@ def growth():
 
 
 if __name__ == "__main__":
-    if len(sys.argv) < 3:
-        sys.exit(__doc__)
-    JOBS, WORK = sys.argv[1:3]
-    chosen = sys.argv[3:] or ["align", "identify", "autoencoder", "growth"]
-    for name in chosen:
-        {"align": align, "identify": identify, "autoencoder": autoencoder, "growth": growth}[name]()
+    for job in arguments(__doc__, {"align": align, "identify": identify, "autoencoder": autoencoder, "growth": growth}):
+        job()

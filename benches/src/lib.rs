@@ -1,2 +1,5 @@
 //! Host benches: the device's engines with criterion (`benches/`), training jobs beside what is used today
-//! (`src/bin/host-jobs`, `peers/host.py`).
+//! (`src/bin`, `peers/`).
+
+pub mod made;
+pub mod measure;

@@ -5,7 +5,9 @@ pub use pulp::NullaryFnOnce as Work;
 /// Runs `work` with the vector instructions of this machine. Loops in it are compiled for each kind of machine and chosen when
 /// the program runs; every operation is rounded as elsewhere, so that results have the same bits.
 ///
-/// A short closure will do. What is longer than the compiler inlines by itself is a type with an `inline(always)` [`Work::call`].
+/// A short closure will do. What is longer than the compiler inlines by itself is a type with an `inline(always)` [`Work::call`]:
+/// a closure that is called and not inlined is compiled for any machine, and so are the closures of iterators in it
+/// (`perf report` shows them as `call_once` and `fold`).
 #[inline(always)]
 pub fn vectorised<W: Work>(work: W) -> W::Output {
     pulp::Arch::new().dispatch(work)

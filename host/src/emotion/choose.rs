@@ -1,7 +1,8 @@
 //! The cost `C` by validation.
 
+use super::curvature::Curvature;
 use super::pairs::{Pairs, pair_accuracy};
-use super::rank::{RankOptions, rank};
+use super::rank::{RankOptions, rank_with};
 use super::samples::Samples;
 
 /// Costs that are tried, times the number of pairs and the mean square of a sample: so that the numbers mean the same for any
@@ -27,6 +28,7 @@ pub struct Choice {
 /// in turn.
 pub fn choose_cost(samples: &Samples, pairs: &Pairs, takes: &[usize], options: &RankOptions) -> Choice {
     let unit = unit(samples, pairs);
+    let curvature = Curvature::new(samples);
     let costs = TRIED.map(|c| c * unit);
     let mut right = [0.0; TRIED.len()];
     let mut count = 0.0;
@@ -41,8 +43,13 @@ pub fn choose_cost(samples: &Samples, pairs: &Pairs, takes: &[usize], options: &
         let share = pairs.len() as f64 / fitted.len() as f64;
         let mut start = Vec::new();
         for (cost, right) in costs.iter().zip(&mut right) {
-            let ranked =
-                rank(samples, &fitted, &RankOptions { cost: cost * share, tolerance: 1e-3, ..*options }, &start);
+            let ranked = rank_with(
+                samples,
+                &curvature,
+                &fitted,
+                &RankOptions { cost: cost * share, tolerance: 1e-3, ..*options },
+                &start,
+            );
             *right += pair_accuracy(&ranked.scores(samples), &judged) * judged.len() as f64;
             start = ranked.weights;
         }

@@ -1,6 +1,7 @@
 //! The hidden layer: tanh units of a few inputs, in f64 but with the device's own formula, and their slopes.
 
 use super::samples::Samples;
+use crate::vector::{Work, vectorised};
 
 /// Where the device's tanh reaches 1.
 const END: f64 = 4.97;
@@ -17,23 +18,44 @@ impl Hidden {
         self.parameters.len() / (self.inputs + 1)
     }
 
-    /// Unit by unit: values `[units x samples]`.
-    pub fn values(&self, samples: &Samples) -> Vec<f64> {
-        let unit = |p: &[f64]| samples.iter().map(move |z| tanh(sum(p, z)).0).collect::<Vec<f64>>();
-        self.parameters.chunks_exact(self.inputs + 1).flat_map(unit).collect()
+    /// Unit by unit: values `[units x samples]`, and their slopes by what goes into the unit.
+    pub fn values(&self, samples: &Samples) -> (Vec<f64>, Vec<f64>) {
+        let mut values = Vec::with_capacity(self.units() * samples.rows());
+        for p in self.parameters.chunks_exact(self.inputs + 1) {
+            values.extend(samples.iter().map(|z| sum(p, z)));
+        }
+        let mut slopes = vec![0.0; values.len()];
+        vectorised(Bend { values: &mut values, slopes: &mut slopes });
+        (values, slopes)
     }
 
-    /// Parameter by parameter: slopes of its unit's values `[units (inputs + 1) x samples]`.
-    pub fn slopes(&self, samples: &Samples) -> Vec<f64> {
+    /// Parameter by parameter: slopes of its unit's values `[units (inputs + 1) x samples]`, from those that `values` returned.
+    pub fn slopes(&self, samples: &Samples, by_sum: &[f64]) -> Vec<f64> {
         let mut slopes = Vec::with_capacity(self.parameters.len() * samples.rows());
-        for p in self.parameters.chunks_exact(self.inputs + 1) {
-            let by_sum: Vec<f64> = samples.iter().map(|z| tanh(sum(p, z)).1).collect();
+        for by_sum in by_sum.chunks_exact(samples.rows().max(1)) {
             for input in 0..self.inputs {
-                slopes.extend(samples.iter().zip(&by_sum).map(|(z, slope)| z[input] * slope));
+                slopes.extend(samples.iter().zip(by_sum).map(|(z, slope)| z[input] * slope));
             }
             slopes.extend(by_sum);
         }
         slopes
+    }
+}
+
+/// Sums into their tanh and its slope.
+struct Bend<'a> {
+    values: &'a mut [f64],
+    slopes: &'a mut [f64],
+}
+
+impl Work for Bend<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        for (value, slope) in self.values.iter_mut().zip(self.slopes) {
+            (*value, *slope) = tanh(*value);
+        }
     }
 }
 
@@ -43,17 +65,18 @@ fn sum(parameters: &[f64], input: &[f64]) -> f64 {
 }
 
 /// [`kinesic::kernel::tanh`] in f64, and the slope of that very formula.
+#[inline(always)]
 pub(super) fn tanh(x: f64) -> (f64, f64) {
-    if x.abs() >= END {
-        return (tanh(0.999_999 * END.copysign(x)).0, 0.0);
-    }
+    let beyond = x.abs() >= END;
+    let x = if beyond { 0.999_999 * END.copysign(x) } else { x };
     let t = x * x;
     let up = x * (135_135.0 + t * (17_325.0 + t * (378.0 + t)));
     let down = 135_135.0 + t * (62_370.0 + t * (3_150.0 + t * 28.0));
     let up_slope = 135_135.0 + t * (3.0 * 17_325.0 + t * (5.0 * 378.0 + t * 7.0));
     let down_slope = x * (2.0 * 62_370.0 + t * (4.0 * 3_150.0 + t * 6.0 * 28.0));
     let value = up / down;
-    (value, (up_slope - value * down_slope) / down)
+    let slope = (up_slope - value * down_slope) / down;
+    (value, if beyond { 0.0 } else { slope })
 }
 
 #[cfg(test)]

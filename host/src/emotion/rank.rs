@@ -4,10 +4,10 @@
 //! gradient: Newton's method in the primal (Chapelle 2007). A pair is two indices, the matrix of pair differences never
 //! exists: gradient and Hessian are `X'` times a vector over the samples, which the pairs fill.
 
+use super::curvature::Curvature;
 use super::pairs::Pairs;
 use super::samples::{Samples, add_scaled};
-use crate::vector::dot;
-use crate::vector::vectorised;
+use crate::vector::{Work, dot, vectorised};
 
 /// How to minimise.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,9 +51,21 @@ impl Ranked {
 
 /// Minimises from `start` (zeros: `&[]`). Only differences of samples count: subtract a mean or not.
 ///
-/// Cost of a conjugate-gradient step: `2 rows x columns` multiply-adds and two a violated pair. Memory: a few vectors.
+/// Cost of a conjugate-gradient step: `2 rows x columns` multiply-adds and two a violated pair. Memory: the samples in single
+/// precision, a few vectors.
 pub fn rank(samples: &Samples, pairs: &Pairs, options: &RankOptions, start: &[f64]) -> Ranked {
-    let mut problem = Problem::new(samples, pairs, options.cost);
+    rank_with(samples, &Curvature::new(samples), pairs, options, start)
+}
+
+/// As [`rank`], with a [`Curvature`] of the samples that is used again.
+pub fn rank_with(
+    samples: &Samples,
+    curvature: &Curvature,
+    pairs: &Pairs,
+    options: &RankOptions,
+    start: &[f64],
+) -> Ranked {
+    let mut problem = Problem::new(samples, curvature, pairs, options.cost);
     let mut weights = vec![0.0; samples.columns()];
     weights.iter_mut().zip(start).for_each(|(to, from)| *to = *from);
     let mut scores = Vec::new();
@@ -93,50 +105,40 @@ pub fn rank(samples: &Samples, pairs: &Pairs, options: &RankOptions, start: &[f6
 pub fn objective(samples: &Samples, pairs: &Pairs, cost: f64, weights: &[f64]) -> f64 {
     let mut scores = Vec::new();
     samples.product(weights, &mut scores);
-    Problem::new(samples, pairs, cost).gradient(weights, &scores, &mut vec![0.0; weights.len()])
+    Problem::new(samples, &Curvature::new(samples), pairs, cost).gradient(
+        weights,
+        &scores,
+        &mut vec![0.0; weights.len()],
+    )
 }
 
 struct Problem<'a> {
     samples: &'a Samples<'a>,
     pairs: &'a Pairs,
+    curvature: &'a Curvature,
     cost: f64,
-    /// Mean of the samples and mean square distance from it, by column: for the preconditioner.
-    spread: Vec<f64>,
-    /// Ordered pairs that are violated at the last gradient.
+    /// Ordered pairs that are violated at the last gradient, and by how much.
     active: Vec<[u32; 2]>,
+    short: Vec<f64>,
     /// One number a sample, filled by pairs.
     pull: Vec<f64>,
-    image: Vec<f64>,
 }
 
 impl<'a> Problem<'a> {
-    fn new(samples: &'a Samples<'a>, pairs: &'a Pairs, cost: f64) -> Self {
-        let mean = samples.mean();
-        let mut spread = vec![0.0; samples.columns()];
-        vectorised(|| {
-            for row in samples.iter() {
-                spread.iter_mut().zip(row).zip(&mean).for_each(|((s, x), m)| *s += (x - m) * (x - m));
-            }
-        });
-        spread.iter_mut().for_each(|s| *s /= samples.rows().max(1) as f64);
+    fn new(samples: &'a Samples<'a>, curvature: &'a Curvature, pairs: &'a Pairs, cost: f64) -> Self {
         let pull = vec![0.0; samples.rows()];
-        Self { samples, pairs, cost, spread, active: Vec::new(), pull, image: Vec::new() }
+        Self { samples, pairs, curvature, cost, active: Vec::new(), short: Vec::new(), pull }
     }
 
     /// Objective, gradient, and the violated pairs.
     fn gradient(&mut self, weights: &[f64], scores: &[f64], gradient: &mut [f64]) -> f64 {
         self.pull.fill(0.0);
-        self.active.clear();
+        self.find_violated(scores);
         let mut loss = 0.0;
-        for pair in &self.pairs.ordered {
-            let [i, j] = pair.map(|i| i as usize);
-            let short = 1.0 - (scores[i] - scores[j]);
-            if short > 0.0 {
-                self.active.push(*pair);
-                loss += short * short;
-                self.pull[i] -= short;
-                self.pull[j] += short;
-            }
+        for ([i, j], short) in self.active.iter().zip(&self.short) {
+            loss += short * short;
+            self.pull[*i as usize] -= short;
+            self.pull[*j as usize] += short;
         }
         for [i, j] in &self.pairs.similar {
             let (i, j) = (*i as usize, *j as usize);
@@ -151,6 +153,20 @@ impl<'a> Problem<'a> {
         0.5 * dot(weights, weights) + self.cost * loss
     }
 
+    /// Keeps a pair by where the next one goes: which pairs are violated, no processor can foresee.
+    fn find_violated(&mut self, scores: &[f64]) {
+        self.active.resize(self.pairs.ordered.len() + 1, [0; 2]);
+        self.short.resize(self.pairs.ordered.len() + 1, 0.0);
+        let mut count = 0;
+        for pair in &self.pairs.ordered {
+            let short = 1.0 - (scores[pair[0] as usize] - scores[pair[1] as usize]);
+            (self.active[count], self.short[count]) = (*pair, short);
+            count += usize::from(short > 0.0);
+        }
+        self.active.truncate(count);
+        self.short.truncate(count);
+    }
+
     fn norm_at_zero(&mut self) -> f64 {
         let mut pull = vec![0.0; self.samples.rows()];
         for [i, j] in &self.pairs.ordered {
@@ -163,26 +179,24 @@ impl<'a> Problem<'a> {
     }
 
     /// `H v = v + 2 C X' L X v`, `L` the Laplacian of the similar and of the violated pairs.
-    fn hessian(&mut self, v: &[f64], out: &mut [f64]) {
-        self.samples.product(v, &mut self.image);
-        self.pull.fill(0.0);
-        let factor = 2.0 * self.cost;
-        for [i, j] in self.active.iter().chain(&self.pairs.similar) {
-            let (i, j) = (*i as usize, *j as usize);
-            let apart = factor * (self.image[i] - self.image[j]);
-            self.pull[i] += apart;
-            self.pull[j] -= apart;
-        }
-        out.copy_from_slice(v);
-        self.samples.add_transposed(&self.pull, out);
+    fn hessian(&self, v: &[f64], out: &mut [f64]) {
+        self.curvature.apply(v, out, |image, pull| {
+            for [i, j] in self.active.iter().chain(&self.pairs.similar) {
+                let (i, j) = (*i as usize, *j as usize);
+                let apart = image[i] - image[j];
+                pull[i] += apart;
+                pull[j] -= apart;
+            }
+        });
+        out.iter_mut().zip(v).for_each(|(out, v)| *out = v + 2.0 * self.cost * *out);
     }
 
     /// `-H^-1 gradient` by conjugate gradients, down to the share `rest` of the gradient. The preconditioner is the diagonal of
     /// the Hessian that independent samples would have.
-    fn newton_step(&mut self, gradient: &[f64], rest: f64) -> Vec<f64> {
+    fn newton_step(&self, gradient: &[f64], rest: f64) -> Vec<f64> {
         let pairs = (self.active.len() + self.pairs.similar.len()) as f64;
         let scale = |g: f64, spread: f64| g / (1.0 + 4.0 * self.cost * pairs * spread);
-        let inverse: Vec<f64> = self.spread.iter().map(|s| scale(1.0, *s)).collect();
+        let inverse: Vec<f64> = self.curvature.spread.iter().map(|s| scale(1.0, *s)).collect();
         let mut step = vec![0.0; gradient.len()];
         let mut residual: Vec<f64> = gradient.iter().map(|g| -g).collect();
         let conditioned = |r: &[f64]| r.iter().zip(&inverse).map(|(r, i)| r * i).collect::<Vec<f64>>();
@@ -214,25 +228,19 @@ impl<'a> Problem<'a> {
     /// The length that minimises along `step`: a convex, piecewise quadratic function of one number; Newton on its slope,
     /// kept between a length at which it falls and one at which it rises.
     fn line_search(&self, weights: &[f64], scores: &[f64], step: &[f64], moved: &[f64]) -> f64 {
-        let (along, own) = (dot(weights, step), dot(step, step));
+        let (mut along, mut own) = (dot(weights, step), dot(step, step));
+        let across = |values: &[f64], [i, j]: [u32; 2]| values[i as usize] - values[j as usize];
+        // Similar pairs are quadratic along the step.
+        for pair in &self.pairs.similar {
+            let apart = across(moved, *pair);
+            along += 2.0 * self.cost * across(scores, *pair) * apart;
+            own += 2.0 * self.cost * apart * apart;
+        }
+        let short: Vec<f64> = self.pairs.ordered.iter().map(|pair| 1.0 - across(scores, *pair)).collect();
+        let apart: Vec<f64> = self.pairs.ordered.iter().map(|pair| across(moved, *pair)).collect();
         let slope = |t: f64| {
-            let (mut first, mut second) = (0.0, 0.0);
-            for [i, j] in &self.pairs.ordered {
-                let (i, j) = (*i as usize, *j as usize);
-                let apart = moved[i] - moved[j];
-                let short = 1.0 - (scores[i] - scores[j]) - t * apart;
-                if short > 0.0 {
-                    first -= short * apart;
-                    second += apart * apart;
-                }
-            }
-            for [i, j] in &self.pairs.similar {
-                let (i, j) = (*i as usize, *j as usize);
-                let apart = moved[i] - moved[j];
-                first += (scores[i] - scores[j] + t * apart) * apart;
-                second += apart * apart;
-            }
-            (along + t * own + 2.0 * self.cost * first, own + 2.0 * self.cost * second)
+            let [first, second] = vectorised(Violated { short: &short, apart: &apart, at: t });
+            (along + t * own - 2.0 * self.cost * first, own + 2.0 * self.cost * second)
         };
         let (mut low, mut high, mut t) = (0.0, f64::INFINITY, 1.0);
         let steep = slope(0.0).0.abs();
@@ -250,6 +258,36 @@ impl<'a> Problem<'a> {
             t = if newton > low && newton < high { newton } else { 0.5 * (low + high.min(2.0 * low + 1.0)) };
         }
         t
+    }
+}
+
+/// Sums of `(short - at apart) apart` and of `apart^2` over the pairs that are violated there, in eight lanes.
+struct Violated<'a> {
+    short: &'a [f64],
+    apart: &'a [f64],
+    at: f64,
+}
+
+impl Work for Violated<'_> {
+    type Output = [f64; 2];
+
+    #[inline(always)]
+    fn call(self) -> [f64; 2] {
+        let mut sums = [[0.0; 8]; 2];
+        let mut add = |lane: usize, short: f64, apart: f64| {
+            let left = short - self.at * apart;
+            let counted = if left > 0.0 { apart } else { 0.0 };
+            sums[0][lane] += left * counted;
+            sums[1][lane] += apart * counted;
+        };
+        let ((short, last_short), (apart, last_apart)) = (self.short.as_chunks::<8>(), self.apart.as_chunks::<8>());
+        for (short, apart) in short.iter().zip(apart) {
+            for lane in 0..8 {
+                add(lane, short[lane], apart[lane]);
+            }
+        }
+        last_short.iter().zip(last_apart).for_each(|(short, apart)| add(0, *short, *apart));
+        sums.map(|lanes| lanes.iter().sum())
     }
 }
 
@@ -279,7 +317,8 @@ mod tests {
     fn the_gradient_is_that_of_finite_differences_and_the_hessian_that_of_the_gradient() {
         let (values, _, pairs) = made(30, 7, 1);
         let samples = Samples::new(&values, 7);
-        let mut problem = Problem::new(&samples, &pairs, 0.3);
+        let curvature = Curvature::new(&samples);
+        let mut problem = Problem::new(&samples, &curvature, &pairs, 0.3);
         let weights: Vec<f64> = (0..7).map(|k| 0.3 * f64::from(k) - 1.0).collect();
         let mut at = |weights: &[f64]| {
             let mut gradient = vec![0.0; 7];
@@ -320,7 +359,8 @@ mod tests {
             let options = RankOptions { cost, tolerance: 1e-9, ..RankOptions::default() };
             let ranked = rank(&samples, &pairs, &options, &[]);
             assert!(ranked.history.windows(2).all(|w| w[1] < w[0]), "{:?}", ranked.history);
-            let mut problem = Problem::new(&samples, &pairs, cost);
+            let curvature = Curvature::new(&samples);
+            let mut problem = Problem::new(&samples, &curvature, &pairs, cost);
             let mut gradient = vec![0.0; 12];
             problem.gradient(&ranked.weights, &ranked.scores(&samples), &mut gradient);
             assert!(norm(&gradient) < 1e-6 * problem.norm_at_zero(), "C = {cost}: {}", norm(&gradient));

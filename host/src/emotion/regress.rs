@@ -16,6 +16,7 @@ use rand::{RngExt, SeedableRng};
 
 use super::hidden::{Hidden, tanh};
 use super::samples::Samples;
+use crate::vector::{dot, vectorised};
 
 /// How to fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,7 +120,7 @@ pub fn regress(inputs: &Samples, outputs: &Samples, options: &RegressOptions) ->
         }
     }
     let count = (outputs.rows() * outputs.columns()).max(1) as f64;
-    let error = (problem.residual(&fit) / count).sqrt();
+    let error = (fit.residual / count).sqrt();
     Regressed { network: problem.network(&hidden, &fit, &range), error, history }
 }
 
@@ -186,20 +187,27 @@ struct Problem<'a> {
 struct Fit {
     /// `[columns x samples]` row-major: hidden values, ones, and the inputs where they go through.
     basis: Vec<f64>,
+    /// Slopes of the hidden values by what goes into their units.
+    bends: Vec<f64>,
     /// Inverse of the damped Gram matrix of the basis.
     inverse: Mat<f64>,
     /// `[columns x outputs]`.
     weights: Mat<f64>,
     objective: f64,
+    /// `|Y - basis' W|^2`.
+    residual: f64,
 }
 
 impl<'a> Problem<'a> {
     fn new(inputs: Samples<'a>, outputs: &'a Samples<'a>, options: RegressOptions) -> Self {
         let mean = outputs.mean();
-        let squares = |m: &dyn Fn(usize) -> f64| {
-            outputs.iter().map(|row| row.iter().enumerate().map(|(k, y)| (y - m(k)).powi(2)).sum::<f64>()).sum::<f64>()
-        };
-        let (total, varied) = (squares(&|_| 0.0), squares(&|k| mean[k]));
+        let mut from_mean = vec![0.0; outputs.columns()];
+        let (mut total, mut varied) = (0.0, 0.0);
+        for row in outputs.iter() {
+            vectorised(|| from_mean.iter_mut().zip(row).zip(&mean).for_each(|((to, y), m)| *to = y - m));
+            total += dot(row, row);
+            varied += dot(&from_mean, &from_mean);
+        }
         Self { inputs, outputs: outputs.matrix(), options, total, varied }
     }
 
@@ -217,7 +225,7 @@ impl<'a> Problem<'a> {
 
     fn fit(&self, hidden: &Hidden) -> Fit {
         let (samples, units) = (self.inputs.rows(), hidden.units());
-        let mut basis = hidden.values(&self.inputs);
+        let (mut basis, bends) = hidden.values(&self.inputs);
         basis.resize(basis.len() + samples, 1.0);
         if self.options.linear {
             for input in 0..self.inputs.columns() {
@@ -227,20 +235,27 @@ impl<'a> Problem<'a> {
         let columns = self.columns(units);
         let rows = MatRef::from_row_major_slice(&basis, columns, samples);
         let mut gram = product(rows, rows.transpose());
-        (0..units).for_each(|k| gram[(k, k)] += self.ridge());
-        // Inputs that say the same, or a constant one, leave the rest open: a trace of damping closes it.
         let trace = (0..columns).map(|k| gram[(k, k)]).sum::<f64>() / columns as f64;
-        (0..columns).for_each(|k| gram[(k, k)] += 1e-12 * trace + f64::MIN_POSITIVE);
+        // Inputs that say the same, or a constant one, leave the rest open: a trace of damping closes it.
+        let damping = |k: usize| if k < units { self.ridge() } else { 0.0 } + 1e-12 * trace + f64::MIN_POSITIVE;
+        (0..columns).for_each(|k| gram[(k, k)] += damping(k));
         let identity = Mat::<f64>::identity(columns, columns);
         let inverse =
             gram.llt(Side::Lower).map(|l| l.solve(&identity)).unwrap_or_else(|_| Mat::zeros(columns, columns));
         let cross = product(rows, self.outputs);
         let weights = product(inverse.as_ref(), cross.as_ref());
-        let explained: f64 =
-            (0..weights.ncols()).map(|o| (0..columns).map(|k| cross[(k, o)] * weights[(k, o)]).sum::<f64>()).sum();
+        // Of normal equations: |Y - basis' W|^2 = |Y|^2 - <cross, W> - <W, damping W>.
+        let (mut explained, mut damped) = (0.0, 0.0);
+        for o in 0..weights.ncols() {
+            for k in 0..columns {
+                explained += cross[(k, o)] * weights[(k, o)];
+                damped += damping(k) * weights[(k, o)] * weights[(k, o)];
+            }
+        }
         let weight = self.decay(hidden);
         let steep: f64 = hidden.parameters.iter().map(|p| p * p).sum();
-        Fit { basis, inverse, weights, objective: self.total - explained + weight * steep }
+        let residual = (self.total - explained - damped).max(0.0);
+        Fit { basis, bends, inverse, weights, objective: self.total - explained + weight * steep, residual }
     }
 
     /// Half the gradient of the objective by the hidden parameters, exact, and Kaufman's curvature.
@@ -248,7 +263,7 @@ impl<'a> Problem<'a> {
         let (samples, units) = (self.inputs.rows(), hidden.units());
         let columns = fit.weights.nrows();
         let (basis, weights) = (MatRef::from_row_major_slice(&fit.basis, columns, samples), fit.weights.as_ref());
-        let slopes = hidden.slopes(&self.inputs);
+        let slopes = hidden.slopes(&self.inputs, &fit.bends);
         let count = hidden.parameters.len();
         let slopes = MatRef::from_row_major_slice(&slopes, count, samples);
         let own = weights.subrows(0, units);
@@ -271,12 +286,6 @@ impl<'a> Problem<'a> {
             curvature[(k, k)] += weight;
         }
         (gradient.collect(), curvature)
-    }
-
-    /// `|Y - basis' W|^2`.
-    fn residual(&self, fit: &Fit) -> f64 {
-        let basis = MatRef::from_row_major_slice(&fit.basis, fit.weights.nrows(), self.inputs.rows());
-        (self.outputs - product(basis.transpose(), fit.weights.as_ref())).squared_norm_l2()
     }
 
     /// The network on inputs as they were given.

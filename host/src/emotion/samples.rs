@@ -2,7 +2,7 @@
 
 use faer::MatRef;
 
-use crate::vector::{dot, vectorised};
+use crate::vector::{Work, dot, vectorised};
 
 /// Samples, row-major `[rows x columns]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,7 +40,8 @@ impl<'a> Samples<'a> {
     /// `X w`: one number a sample. Cost: `rows x columns` multiply-adds.
     pub fn product(&self, weights: &[f64], out: &mut Vec<f64>) {
         out.clear();
-        vectorised(|| out.extend(self.iter().map(|row| dot(row, weights))));
+        out.resize(self.rows(), 0.0);
+        vectorised(Product { samples: self, weights, out });
     }
 
     /// `out += X' r`. Cost: `rows x columns` multiply-adds.
@@ -63,9 +64,26 @@ impl<'a> Samples<'a> {
     /// Mean of every column.
     pub fn mean(&self) -> Vec<f64> {
         let mut mean = vec![0.0; self.columns];
-        self.iter().for_each(|row| add_scaled(&mut mean, 1.0, row));
+        self.add_transposed(&vec![1.0; self.rows()], &mut mean);
         mean.iter_mut().for_each(|m| *m /= self.rows().max(1) as f64);
         mean
+    }
+}
+
+struct Product<'a> {
+    samples: &'a Samples<'a>,
+    weights: &'a [f64],
+    out: &'a mut [f64],
+}
+
+impl Work for Product<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        for (out, row) in self.out.iter_mut().zip(self.samples.iter()) {
+            *out = dot(row, self.weights);
+        }
     }
 }
 

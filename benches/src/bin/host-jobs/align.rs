@@ -6,8 +6,8 @@ use std::path::Path;
 use kinesic_host::align::{Search, Series, Settings, align};
 use serde_json::{Value, json};
 
-use crate::made;
-use crate::measure::{peak_mib, timed, write};
+use kinesic_benches::made;
+use kinesic_benches::measure::{peak_mib, timed, write};
 
 const FRAMES: f64 = 1400.0;
 const CHANNELS: usize = 60;
@@ -29,12 +29,12 @@ pub fn run(folder: &Path, scale: f64) -> Result<Value, Box<dyn Error>> {
     let settings = Settings { max_iterations: ITERATIONS, tolerance: 0.0, ..Settings::default() };
     let (seconds, warp) = timed(|| align(u, v, &settings));
     let peak = peak_mib();
-    let energy = warp?.history().last().map_or(f64::NAN, |step| step.energy.total());
+    let costs: Vec<f64> = warp?.history().iter().map(|step| step.energy.total()).collect();
     let full = align(u, v, &Settings { search: Search::Full, ..settings })?;
     let full = full.history().last().map_or(f64::NAN, |step| step.energy.total());
     let Settings { scale, offset, ridge, .. } = settings;
     Ok(json!({
-        "seconds": seconds, "peak_mib": peak, "energy": energy, "full_search_energy": full,
+        "seconds": seconds, "peak_mib": peak, "energy": costs.last(), "full_search_energy": full, "costs": costs,
         "frames": frames, "channels": CHANNELS, "iterations": ITERATIONS, "ridge": ridge,
         "scale": [scale.first, scale.second], "offset": [offset.first, offset.second],
     }))

@@ -8,8 +8,8 @@ use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
 use serde_json::{Value, json};
 
-use crate::made;
-use crate::measure::{peak_mib, timed, write};
+use kinesic_benches::made;
+use kinesic_benches::measure::{peak_mib, timed, write};
 
 const SAMPLES: f64 = 33_000.0;
 const TESTED: usize = 3_000;

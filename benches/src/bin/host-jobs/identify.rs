@@ -13,8 +13,8 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use serde_json::{Value, json};
 
-use crate::made;
-use crate::measure::{peak_mib, timed, write};
+use kinesic_benches::made;
+use kinesic_benches::measure::{peak_mib, timed, write};
 
 const ORDER: usize = 40;
 const FRAMES: f64 = 6000.0;
@@ -56,24 +56,31 @@ pub fn made(folder: &Path, scale: f64) -> Result<Value, Box<dyn Error>> {
     run(folder, &u, &y, frames)
 }
 
-/// A recorded pair: the left foot of a neutral walk, and of a masculine one on its clock; learned on the first half, tested on
-/// the second.
+/// Styles of the recorded pairs.
+const STYLES: [&str; 6] = ["active", "elderly", "exhausted", "feminine", "masculine", "youthful"];
+
+/// Recorded pairs: the left foot of a neutral walk, and of each styled one on its clock; learned on the first half, tested on the
+/// second. The inputs go into a folder a style.
 pub fn recorded(folder: &Path) -> Result<Value, Box<dyn Error>> {
     let data = std::env::var_os("KINESIC_DATA").map_or_else(|| PathBuf::from("../shared/data"), PathBuf::from);
-    let read = |name: &str| Source::read(&data.join(name), &Default::default());
-    let (neutral, styled) = (read("bandai2/walk_normal_004.bvh")?, read("bandai2/walk_masculine_004.bvh")?);
+    let read = |style: &str| Source::read(&data.join(format!("bandai2/walk_{style}_004.bvh")), &Default::default());
+    let neutral = read("normal")?;
     let rig = neutral.rig()?;
     let joint = rig.skeleton.find("Foot_L").ok_or("no Foot_L")?;
     let locals = |source: &Source| -> Result<Locals, Box<dyn Error>> {
         Ok(rig.locals(&rig.poses(&source.on_rig(&rig, FRAME_RATE)?)))
     };
-    let (neutral, styled) = (locals(&neutral)?, locals(&styled)?);
-    let (from, to) = (series(&neutral)?, series(&styled)?);
-    let on_clock = align(from, to, &Settings::default())?.apply(to)?;
-    let of = |positions: &[f64]| standard(positions, neutral.channels(), joint);
-    let (u, y) = (of(&neutral.positions), of(&on_clock));
-    let frames = u.nrows() / 2;
-    run(folder, &u, &y, frames)
+    let neutral = locals(&neutral)?;
+    let mut pairs = serde_json::Map::new();
+    for style in STYLES {
+        let styled = locals(&read(style)?)?;
+        let (from, to) = (series(&neutral)?, series(&styled)?);
+        let on_clock = align(from, to, &Settings::default())?.apply(to)?;
+        let of = |positions: &[f64]| standard(positions, neutral.channels(), joint);
+        let (u, y) = (of(&neutral.positions), of(&on_clock));
+        pairs.insert(style.into(), run(&folder.join(style), &u, &y, u.nrows() / 2)?);
+    }
+    Ok(pairs.into())
 }
 
 fn series(locals: &Locals) -> Result<Series<'_>, AlignError> {

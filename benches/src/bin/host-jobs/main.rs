@@ -5,14 +5,19 @@
 //! |---|---|
 //! | `align` | motion warping, 10 iterations, 60 channels, 1,400 frames |
 //! | `identify` | a model of order 40, 3 inputs, 3 outputs, 6,000 frames; tested on 6,000 more |
-//! | `identify-real` | the same on a recorded pair: `KINESIC_DATA` |
+//! | `identify-real` | the same on six recorded pairs: `KINESIC_DATA` |
 //! | `autoencoder` | an epoch of 120-300-120, 33,000 samples, batches of 128 |
+//! | `rank`, `rank-similar`, `rank-full` | a ranking function: 1,000 motions, 100,000 pairs, 520 or 1,560 numbers a motion |
+//! | `regress` | strength -> 520 numbers by ten tanh units, 1,000 motions |
+//! | `pca`, `pca-clip` | 40 principal components of 13,000 keyframes x 120, of 1,400 frames x 198 |
 
 mod align;
 mod autoencoder;
 mod identify;
-mod made;
-mod measure;
+mod motions;
+mod principal;
+mod rank;
+mod regress;
 
 use std::error::Error;
 use std::path::Path;
@@ -29,7 +34,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         "identify" => identify::made(folder, scale)?,
         "identify-real" => identify::recorded(folder)?,
         "autoencoder" => autoencoder::run(folder, scale)?,
-        other => return Err(format!("no job {other}: align, identify, identify-real or autoencoder").into()),
+        "rank" => rank::run(folder, scale, rank::Kind::Reduced)?,
+        "rank-similar" => rank::run(folder, scale, rank::Kind::Similar)?,
+        "rank-full" => rank::run(folder, scale, rank::Kind::Full)?,
+        "regress" => regress::run(folder, scale)?,
+        "pca" => principal::keyframes(folder, scale)?,
+        "pca-clip" => principal::clip(folder, scale)?,
+        other => return Err(format!("no job {other}: see the table in benches/src/bin/host-jobs/main.rs").into()),
     };
     println!("{figures}");
     Ok(())

@@ -5,7 +5,7 @@ use std::ops::Range;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 
-use crate::vector::{dot, vectorised};
+use crate::vector::{Work, dot, vectorised};
 
 /// A finite impulse response: `y[t] = sum over k of g[k] u[t - k] + constant`.
 #[derive(Clone, Debug)]
@@ -43,8 +43,7 @@ pub fn impulse_response(
     let mut power = vec![0.0; p];
     for ((u, y), range) in inputs.iter().zip(outputs).zip(covered) {
         let past = Past::new(u, taps, range.clone());
-        vectorised(|| past.add_gram(&mut gram));
-        vectorised(|| past.add_cross(y, &mut cross));
+        vectorised(Products { past: &past, y, gram: &mut gram, cross: &mut cross });
         for (i, mean) in mean_in.iter_mut().enumerate() {
             *mean += past.delayed(i).iter().sum::<f64>() / frames as f64;
         }
@@ -88,6 +87,24 @@ pub fn impulse_response(
         (0..p).map(|o| mean_out[o] - (0..size).map(|i| solution[(i, o)] * mean_in[i]).sum::<f64>()).collect();
     let taps = (0..taps).map(|k| Mat::from_fn(p, m, |o, i| solution[(i * taps + k, o)])).collect();
     Some(ImpulseResponse { taps, constant })
+}
+
+/// Sums over one sequence.
+struct Products<'a> {
+    past: &'a Past,
+    y: &'a Mat<f64>,
+    gram: &'a mut Mat<f64>,
+    cross: &'a mut Mat<f64>,
+}
+
+impl Work for Products<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        self.past.add_gram(self.gram);
+        self.past.add_cross(self.y, self.cross);
+    }
 }
 
 /// The inputs of one sequence as regressors: number `i` is input `i / taps`, delayed by `i % taps` frames.

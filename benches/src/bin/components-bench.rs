@@ -1,7 +1,8 @@
 //! The numbers of `docs/components.md`, from the clips in `KINESIC_DATA` (default `../shared/data`):
-//! `cargo run --release -p kinesic-host --example components_bench -- TABLE [FOLDER]`, where `TABLE` is one of
+//! `cargo run --release -p kinesic-benches --bin components-bench -- TABLE [FOLDER]`, where `TABLE` is one of
 //!
-//! - `factor FOLDER`: factorises ten clips, and writes matrices and supports for `benches/peers/components.py`
+//! - `motions FOLDER`: ten clips and a made one, `motion0.csv` to `motion10.csv`, for `benches/peers/components.py`
+//! - `factor FOLDER`: factorises those that `FOLDER/wanted.csv` names (motion, components, density): times and supports
 //! - `penalty`: density, error and objective over the sparsity weight
 //! - `explained`: explained content against the number of components used
 //! - `transfer`: distances, bones and jerk of sparse components and PCA, with and without bone and smoothness terms
@@ -16,6 +17,8 @@ use std::time::Instant;
 
 use faer::linalg::solvers::Solve;
 use faer::{Mat, MatRef};
+use kinesic_benches::made;
+use kinesic_benches::measure::seconds_a_call;
 use kinesic_host::clip::ReadOptions;
 use kinesic_host::components::{
     FRAME_RATE, Factors, Motion, Objective, Optimiser, Sparsity, Weights, bone_error, bones, choose, content_distance,
@@ -50,19 +53,21 @@ const PAIRS: [[&str; 2]; 5] = [
 ];
 
 const COUNTS: [usize; 3] = [10, 30, 50];
-const DENSITIES: [f64; 6] = [0.05, 0.08, 0.12, 0.2, 0.3, 0.5];
+/// Frames and channels of the made motion.
+const MADE: [usize; 2] = [200, 69];
 
 fn main() -> Fallible<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let folder = arguments.get(1).map(PathBuf::from);
     match (arguments.first().map(String::as_str), folder) {
+        (Some("motions"), Some(folder)) => motions(&folder),
         (Some("factor"), Some(folder)) => factor(&folder),
         (Some("penalty"), _) => penalty(),
         (Some("explained"), _) => explained(),
         (Some("transfer"), _) => transfer(),
         (Some("count"), _) => count(),
         (Some("learn"), Some(folder)) => learning(&folder),
-        _ => Err("expected: factor FOLDER, penalty, explained, transfer, count or learn FOLDER".into()),
+        _ => Err("expected: motions FOLDER, factor FOLDER, penalty, explained, transfer, count or learn FOLDER".into()),
     }
 }
 
@@ -105,56 +110,44 @@ fn strongest(motion: MatRef<'_, f64>, count: usize, density: f64) -> Factors {
     factors
 }
 
-fn factor(folder: &Path) -> Fallible<()> {
+/// The ten clips, and one that is made: gait-like, less its mean.
+fn all_motions() -> Fallible<Vec<Mat<f64>>> {
+    let mut motions = CLIPS.iter().map(|name| Ok(own(name)?.1.values)).collect::<Fallible<Vec<_>>>()?;
+    let [frames, channels] = MADE;
+    let rows = made::rows(&made::channels(channels, 21), frames, |t| t, 22);
+    motions.push(made::centred(MatRef::from_row_major_slice(&rows, frames, channels)));
+    Ok(motions)
+}
+
+fn motions(folder: &Path) -> Fallible<()> {
     fs::create_dir_all(folder)?;
-    let mut lines = String::from("clip,components,method,density,file,milliseconds,objective,sweeps\n");
-    for (index, name) in CLIPS.iter().enumerate() {
-        let (_, motion) = own(name)?;
-        let m = motion.values.as_ref();
-        write_matrix(&folder.join(format!("motion{index}.csv")), m)?;
-        for count in COUNTS {
-            for density in DENSITIES {
-                let sparsity = Sparsity { density: Some(density), ..Sparsity::default() };
-                let time = processor_seconds(|| drop(sparse(m, count, &sparsity)))?;
-                let found = sparse(m, count, &sparsity);
-                let last = found.history.last().copied().unwrap_or_default();
-                let thinned = strongest(m, count, density);
-                for (method, factors) in [("kinesic", &found.factors), ("pca", &thinned)] {
-                    let file = format!("{method}-{index}-{count}-{density}.csv");
-                    write_matrix(&folder.join(&file), factors.components.transpose())?;
-                    let (time, objective, sweeps) =
-                        if method == "kinesic" { (1e3 * time, last, found.history.len() - 1) } else { (0.0, 0.0, 0) };
-                    writeln!(
-                        lines,
-                        "{index},{count},{method},{},{file},{time:.3},{objective:.5},{sweeps}",
-                        factors.density()
-                    )?;
-                }
-            }
-        }
-        eprintln!("{index} {name}: {} x {}", motion.frames(), motion.channels());
+    for (index, motion) in all_motions()?.iter().enumerate() {
+        write_matrix(&folder.join(format!("motion{index}.csv")), motion.as_ref())?;
     }
-    fs::write(folder.join("ours.csv"), lines)?;
     Ok(())
 }
 
-/// Processor time of one call, s, over as many as take half a second: other work on the machine does not count. Linux only,
-/// where it is counted in ticks of some milliseconds.
-fn processor_seconds(mut work: impl FnMut()) -> Fallible<f64> {
-    let used = || -> Fallible<f64> {
-        let line = fs::read_to_string("/proc/thread-self/schedstat")?;
-        let nanoseconds = line.split_whitespace().next().ok_or("/proc/thread-self/schedstat is empty")?;
-        Ok(1e-9 * nanoseconds.parse::<f64>()?)
-    };
-    let (begin, mut calls) = (used()?, 0);
-    loop {
-        work();
-        calls += 1;
-        let seconds = used()? - begin;
-        if seconds > 0.5 {
-            return Ok(seconds / f64::from(calls));
+fn factor(folder: &Path) -> Fallible<()> {
+    let motions = all_motions()?;
+    let mut lines = String::from("motion,components,wanted,method,file,seconds\n");
+    for (line, wanted) in fs::read_to_string(folder.join("wanted.csv"))?.lines().enumerate() {
+        let [index, count, density] = wanted.split(',').collect::<Vec<_>>()[..] else {
+            return Err(format!("wanted.csv, line {}: expected motion,components,density", line + 1).into());
+        };
+        let motion: &Mat<f64> = motions.get(index.parse::<usize>()?).ok_or("no such motion")?;
+        let (m, count, density) = (motion.as_ref(), count.parse()?, density.parse()?);
+        let sparsity = Sparsity { density: Some(density), ..Sparsity::default() };
+        let seconds = seconds_a_call(0.5, || drop(sparse(m, count, &sparsity)));
+        let found = sparse(m, count, &sparsity).factors;
+        for (method, factors, seconds) in
+            [("kinesic", &found, seconds), ("pca", &strongest(m, count, density), f64::NAN)]
+        {
+            let file = format!("{method}-{line}.csv");
+            write_matrix(&folder.join(&file), factors.components.transpose())?;
+            writeln!(lines, "{index},{count},{density},{method},{file},{seconds}")?;
         }
     }
+    Ok(fs::write(folder.join("ours.csv"), lines)?)
 }
 
 /// What the sparsity weight alone does: no pruning to a wanted density.
@@ -171,7 +164,7 @@ fn penalty() -> Fallible<()> {
             for motion in &motions {
                 let m = motion.values.as_ref();
                 let sparsity = Sparsity { penalty, density: None, ..Sparsity::default() };
-                let time = processor_seconds(|| drop(sparse(m, count, &sparsity)))?;
+                let time = seconds_a_call(0.5, || drop(sparse(m, count, &sparsity)));
                 let found = sparse(m, count, &sparsity);
                 let density = found.factors.density();
                 let row = [
@@ -365,11 +358,11 @@ fn learning(folder: &Path) -> Fallible<()> {
     write_matrix(&folder.join("bones.csv"), table.as_ref())?;
     let fixed = Optimiser { max_steps: 500, threshold: -1.0, ..Optimiser::default() };
     let mut last = f64::NAN;
-    let seconds = processor_seconds(|| {
+    let seconds = seconds_a_call(0.5, || {
         let learned = learn(&objective, start.clone(), &fixed);
         assert_eq!(learned.history.len(), 501);
         last = learned.history[500];
-    })?;
+    });
     println!("kinesic,{seconds},{last}");
     Ok(())
 }

@@ -7,15 +7,24 @@ use std::path::Path;
 /// Runs of a job; the first warms the caches and is not counted.
 const RUNS: usize = 5;
 
-/// Processor seconds of five runs, and the last result.
+/// Processor seconds of a call, measured five times, and the last result.
 pub fn timed<T>(mut job: impl FnMut() -> T) -> (Vec<f64>, T) {
     let mut result = job();
-    let seconds = (0..RUNS).map(|_| {
-        let before = processor_seconds();
-        result = job();
-        processor_seconds() - before
-    });
-    (seconds.collect(), result)
+    let seconds = (0..RUNS).map(|_| seconds_a_call(0.1, || result = job())).collect();
+    (seconds, result)
+}
+
+/// Processor seconds of one call, over as many as take at least so long: the system counts in ticks of some milliseconds.
+pub fn seconds_a_call(least: f64, mut work: impl FnMut()) -> f64 {
+    let (begin, mut calls) = (processor_seconds(), 0);
+    loop {
+        work();
+        calls += 1;
+        let seconds = processor_seconds() - begin;
+        if seconds > least {
+            return seconds / f64::from(calls);
+        }
+    }
 }
 
 /// Processor time of all threads, s (Linux): does not depend on what else the machine does, except through its caches.

@@ -1,5 +1,6 @@
 //! Seeded, gait-like signals.
 
+use faer::{Mat, MatRef};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 
@@ -47,4 +48,14 @@ pub fn rows(channels: &[Channel], frames: usize, clock: impl Fn(f64) -> f64, see
         channels.iter().map(|channel| channel.at(time) + random.random_range(-0.05..0.05)).collect()
     };
     (0..frames).flat_map(&mut row).collect()
+}
+
+/// Less the mean of every column.
+pub fn centred(rows: MatRef<'_, f64>) -> Mat<f64> {
+    let mut centred = rows.to_owned();
+    for column in centred.col_iter_mut() {
+        let mean = column.sum() / column.nrows().max(1) as f64;
+        column.iter_mut().for_each(|x| *x -= mean);
+    }
+    centred
 }
