@@ -6,15 +6,20 @@
 //! | [`mod@rank`] | the ranking function: primal Newton over a graph of pairs; faces use it too |
 //! | `pairs`, [`choose_cost`] | which motion shows more than which; the cost by validation |
 //! | [`mod@regress`], `hidden` | strength -> features: ten tanh units, the output layer eliminated |
+//! | [`EmotionModel`] | what training makes, as a pack and back |
+//! | [`made`] | a made model for tests and firmware workloads |
 
 mod choose;
 mod hidden;
+pub mod made;
+mod model;
 pub mod pairs;
 pub mod rank;
 pub mod regress;
 mod samples;
 
 pub use choose::{Choice, choose_cost};
+pub use model::{Attribute, EmotionModel, HostEmotion, MAX_KEYS, MAX_WIDTH};
 pub use pairs::{Pairs, pair_accuracy, spearman};
 pub use rank::{RankOptions, Ranked, rank};
 pub use regress::{RegressOptions, Regressed, Regression, regress};
