@@ -25,13 +25,7 @@ pub(super) struct Motion<const JOINTS: usize, const KEYS: usize> {
 impl<const JOINTS: usize, const KEYS: usize> Motion<JOINTS, KEYS> {
     /// Nothing yet.
     pub fn new() -> Self {
-        Self {
-            positions: [[[0.0; 3]; JOINTS]; KEYS],
-            durations: [0.0; KEYS],
-            pieces: 0,
-            round: None,
-            seconds: 0.0,
-        }
+        Self { positions: [[[0.0; 3]; JOINTS]; KEYS], durations: [0.0; KEYS], pieces: 0, round: None, seconds: 0.0 }
     }
 
     /// Duration of a piece, s.

@@ -19,6 +19,7 @@ mod mix;
 mod modulate;
 mod output;
 mod quantize;
+mod synth;
 mod train;
 mod view;
 
@@ -60,6 +61,7 @@ enum Command {
     Export(export::Args),
     Completions(completions::Args),
     Face(face::Args),
+    Synth(synth::Args),
 }
 
 /// Runs a command line.
@@ -79,6 +81,7 @@ pub fn run(cli: Cli) -> miette::Result<()> {
         Command::Export(args) => export::run(&args),
         Command::Completions(args) => completions::run(&args),
         Command::Face(args) => face::run(&args),
+        Command::Synth(args) => synth::run(&args),
     }
 }
 

@@ -7,6 +7,7 @@
 //! | `pairs`, [`choose_cost`] | which motion shows more than which; the cost by validation |
 //! | [`mod@regress`], `hidden` | strength -> features: ten tanh units, the output layer eliminated |
 //! | [`EmotionModel`] | what training makes, as a pack and back |
+//! | [`play`] | playback through the device's code |
 //! | [`made`] | a made model for tests and firmware workloads |
 
 mod choose;
@@ -14,6 +15,7 @@ mod hidden;
 pub mod made;
 mod model;
 pub mod pairs;
+pub mod play;
 pub mod rank;
 pub mod regress;
 mod samples;

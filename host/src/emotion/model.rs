@@ -118,8 +118,7 @@ impl EmotionModel {
         let device = HostEmotion::load(pack)?;
         let meta = device.meta();
         let (inputs, joints) = (device.attributes(), device.skeleton().joints());
-        let (keyframes, components, units) =
-            (meta.keyframes as usize, meta.components as usize, meta.hidden as usize);
+        let (keyframes, components, units) = (meta.keyframes as usize, meta.components as usize, meta.hidden as usize);
         let motion = keyframes * components;
         let hidden: &[f32] = pack.slice("emotion/hidden", units * (inputs + 1))?;
         let padded = components.next_multiple_of(ROWS);
