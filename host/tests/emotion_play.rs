@@ -96,7 +96,7 @@ fn a_change_of_strength_moves_nothing_and_alters_no_speed() {
             step(&device, &mut state, 0.017);
             let (before, speed) = (step(&device, &mut state, 0.0), rates(&device, &state));
             let playing = state.playing();
-            state.strength = [(at % 3) as f32 * 0.5, 1.0 - (at % 5) as f32 * 0.5, 0.0, 0.0];
+            state.strength = [((at + 1) % 3) as f32 * 0.5, 1.0 - (at % 5) as f32 * 0.5, 0.0, 0.0];
             device.change(&mut state);
             assert_ne!(state.playing(), playing);
             let (after, speed_after) = (step(&device, &mut state, 0.0), rates(&device, &state));

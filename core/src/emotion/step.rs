@@ -105,8 +105,12 @@ impl<const JOINTS: usize, const KEYS: usize, const WIDTH: usize> Emotion<'_, JOI
         taps
     }
 
-    /// Time passes: over keyframes, and into the next round of a cycle.
-    fn advance(&self, state: &mut EmotionState<JOINTS, KEYS>, dt: f32) {
+    /// `dt` seconds pass unseen: over keyframes, and into the next round of a cycle. Nothing happens before the first frame.
+    /// Cost: a few operations a keyframe that is passed.
+    pub fn advance(&self, state: &mut EmotionState<JOINTS, KEYS>, dt: f32) {
+        if state.played.is_none() {
+            return;
+        }
         let mut left = if dt.is_finite() { dt.max(0.0).min(state.motion.seconds) } else { 0.0 };
         for _ in 0..=state.motion.pieces {
             let until = state.motion.duration(state.piece) - state.into;

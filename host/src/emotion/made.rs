@@ -21,20 +21,28 @@ pub const UNITS: usize = 10;
 /// Frames a second of the made walks, so that a keyframe is near a frame.
 const FPS: f64 = 480.0;
 
-/// A cycle of the made gait, of the paper's size, with one or two attributes: weary from 0 to 1, swaying from -1 to 1. The
-/// keyframes are those of made walks, the network joins them; nothing is trained.
+/// Keyframes, components of a keyframe and hidden units.
+pub type Size = [usize; 3];
+
+/// [`sized`] as the paper has it.
 pub fn model(attributes: usize) -> (EmotionModel, Rig) {
+    sized(attributes, [KEYS, COMPONENTS, UNITS])
+}
+
+/// A cycle of the made gait with one or two attributes: weary from 0 to 1, swaying from -1 to 1. The
+/// keyframes are those of made walks, the network joins them; nothing is trained.
+pub fn sized(attributes: usize, [keys, components, units]: Size) -> (EmotionModel, Rig) {
     let skeleton = skeleton();
     let map = JointMap::detect(&skeleton).unwrap_or_else(|| unreachable!("the gait's joints have known names"));
     let rig = Rig::new(&skeleton, &map).unwrap_or_else(|error| unreachable!("the gait is a rig: {error}"));
     let swaying = Manner { sway: 0.3, arms: 0.9, ..Manner::NEUTRAL };
     let manners: Vec<Manner> = [Manner::NEUTRAL, Manner::WEARY, swaying].into_iter().take(attributes + 1).collect();
-    let cycles: Vec<Cycle> = manners.iter().map(|manner| Cycle::new(&rig, manner)).collect();
+    let cycles: Vec<Cycle> = manners.iter().map(|manner| Cycle::new(&rig, manner, keys)).collect();
     let features: Vec<&[f64]> = cycles.iter().flat_map(|cycle| cycle.keyframes.iter().map(Vec::as_slice)).collect();
     let width = 6 * rig.joints();
     let mean: Vec<f64> =
         (0..width).map(|c| features.iter().map(|row| row[c]).sum::<f64>() / features.len() as f64).collect();
-    let directions = directions(&features, &mean);
+    let directions = directions(&features, &mean, components);
     let coordinates = |cycle: &Cycle| -> Vec<f64> {
         let row = |row: &Vec<f64>| directions.iter().map(|d| dot_from(row, &mean, d)).collect::<Vec<f64>>();
         cycle.keyframes.iter().flat_map(row).collect()
@@ -63,14 +71,14 @@ pub fn model(attributes: usize) -> (EmotionModel, Rig) {
             .take(attributes)
             .map(|(name, strength)| Attribute { name: name.to_owned(), strength })
             .collect(),
-        keyframes: KEYS,
+        keyframes: keys,
         cycle: true,
         duration: [0.02, 0.5],
         network: Regression {
             inputs: attributes,
-            hidden: (0..UNITS * attributes).map(|at| 2.0 * wave(at)).collect(),
-            hidden_bias: (0..UNITS).map(|at| wave(3 * at + 1)).collect(),
-            output: (0..motion * UNITS).map(|at| 2e-3 * wave(at)).collect(),
+            hidden: (0..units * attributes).map(|at| 2.0 * wave(at)).collect(),
+            hidden_bias: (0..units).map(|at| wave(3 * at + 1)).collect(),
+            output: (0..motion * units).map(|at| 2e-3 * wave(at)).collect(),
             linear: (0..motion).flat_map(|at| changes.iter().map(move |change| change[at])).collect(),
             bias: neutral.clone(),
         },
@@ -91,13 +99,13 @@ struct Cycle {
 }
 
 impl Cycle {
-    fn new(rig: &Rig, manner: &Manner) -> Self {
+    fn new(rig: &Rig, manner: &Manner, count: usize) -> Self {
         let seconds = 1.0 / manner.cadence;
         let poses = rig.poses(&walk(manner, seconds + 0.1, FPS, 0.0, 1));
-        let frame = |key: usize| (seconds * FPS * key as f64 / (KEYS - 1) as f64).round() as usize;
-        let keys: Vec<Pose<MAX_JOINTS>> = (0..KEYS).map(|key| poses[frame(key)]).collect();
+        let frame = |key: usize| (seconds * FPS * key as f64 / (count - 1) as f64).round() as usize;
+        let keys: Vec<Pose<MAX_JOINTS>> = (0..count).map(|key| poses[frame(key)]).collect();
         let positions: Vec<Vec<f64>> = keys.iter().map(|pose| positions(rig, pose)).collect();
-        let keyframes = (0..KEYS).map(|key| {
+        let keyframes = (0..count).map(|key| {
             let at = key.max(1);
             let time = (frame(at) - frame(at - 1)) as f64 / FPS;
             let rates = positions[at].iter().zip(&positions[at - 1]).map(|(to, from)| (to - from) / time);
@@ -121,13 +129,13 @@ fn positions(rig: &Rig, pose: &Pose<MAX_JOINTS>) -> Vec<f64> {
     world.positions[..rig.joints()].iter().flat_map(|p: &Vector3<f32>| p.iter().map(|x| f64::from(*x))).collect()
 }
 
-/// [`COMPONENTS`] directions at right angles that span the features, by Gram and Schmidt; seeded ones where these are used up.
-fn directions(features: &[&[f64]], mean: &[f64]) -> Vec<Vec<f64>> {
+/// Directions at right angles that span the features, by Gram and Schmidt; seeded ones where these are used up.
+fn directions(features: &[&[f64]], mean: &[f64], count: usize) -> Vec<Vec<f64>> {
     let mut directions: Vec<Vec<f64>> = Vec::new();
     let centred = features.iter().map(|row| row.iter().zip(mean).map(|(x, m)| x - m).collect::<Vec<f64>>());
     let seeded = (0..).map(|n| (0..mean.len()).map(|c| (TAU * 0.618 * (n * c + n + c) as f64).sin()).collect());
     for mut row in centred.chain(seeded) {
-        if directions.len() == COMPONENTS {
+        if directions.len() == count {
             break;
         }
         // Twice is enough for right angles to rounding.
