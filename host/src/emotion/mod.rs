@@ -3,6 +3,11 @@
 //!
 //! | file | holds |
 //! |---|---|
+//! | [`labels`] | tables of labelled clips |
+//! | [`segment`] | clips -> motions: whole, or cycle by cycle |
+//! | [`motions`] | labelled clips, cut, with their pairs |
+//! | [`keyframes`] | the moments between which the spline draws all motions best |
+//! | [`features`] | keyframes -> positions and velocities -> principal components |
 //! | [`mod@rank`] | the ranking function: primal Newton over a graph of pairs; faces use it too |
 //! | `pairs`, [`choose_cost`] | which motion shows more than which; the cost by validation |
 //! | [`mod@regress`], `hidden` | strength -> features: ten tanh units, the output layer eliminated |
@@ -11,14 +16,19 @@
 //! | [`made`] | a made model for tests and firmware workloads |
 
 mod choose;
+pub mod features;
 mod hidden;
+pub mod keyframes;
+pub mod labels;
 pub mod made;
 mod model;
+pub mod motions;
 pub mod pairs;
 pub mod play;
 pub mod rank;
 pub mod regress;
 mod samples;
+pub mod segment;
 
 pub use choose::{Choice, choose_cost};
 pub use model::{Attribute, EmotionModel, HostEmotion, MAX_KEYS, MAX_WIDTH};
