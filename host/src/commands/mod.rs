@@ -19,6 +19,7 @@ mod mix;
 mod modulate;
 mod output;
 mod quantize;
+mod score;
 mod synth;
 mod train;
 mod view;
@@ -58,6 +59,7 @@ enum Command {
     Blend(blend::Args),
     View(view::Args),
     Quantize(quantize::Args),
+    Score(score::Args),
     Export(export::Args),
     Completions(completions::Args),
     Face(face::Args),
@@ -78,6 +80,7 @@ pub fn run(cli: Cli) -> miette::Result<()> {
         Command::Blend(args) => blend::run(&args),
         Command::View(args) => view::run(&args),
         Command::Quantize(args) => quantize::run(&args),
+        Command::Score(args) => score::run(&args),
         Command::Export(args) => export::run(&args),
         Command::Completions(args) => completions::run(&args),
         Command::Face(args) => face::run(&args),

@@ -76,6 +76,10 @@ pub struct Attribute {
     pub levels: Levels,
 }
 
+/// How notes about attributes begin.
+const ORDER: &str = "order ";
+const COLUMN: &str = "strengths in column ";
+
 /// Where levels come from.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Levels {
@@ -108,6 +112,23 @@ impl Attribute {
     /// From the name of a column of numbers.
     pub fn from_column(name: &str) -> Self {
         Self { name: name.to_owned(), levels: Levels::Column }
+    }
+
+    /// For the pack's notes, so that a pack knows what it was trained on.
+    pub fn note(&self) -> String {
+        match &self.levels {
+            Levels::Column => format!("{COLUMN}{}", self.name),
+            Levels::Order(steps) => {
+                let steps: Vec<String> = steps.iter().map(|step| step.join("=")).collect();
+                format!("{ORDER}{}:{}", self.name, steps.join(">"))
+            }
+        }
+    }
+
+    /// What a note of [`note`](Self::note) says; `None` for any other note.
+    pub fn from_note(note: &str) -> Option<Self> {
+        let order = note.strip_prefix(ORDER).and_then(|order| Self::from_order(order).ok());
+        order.or_else(|| note.strip_prefix(COLUMN).map(Self::from_column))
     }
 
     /// Level of a label: 1 the strongest, 0 the weakest, steps between evenly spaced.
@@ -254,6 +275,10 @@ mod tests {
         let mood = Attribute::from_order("happy > normal=calm > sad").unwrap();
         let anger = Attribute::from_order("anger:angry>normal").unwrap();
         assert_eq!((mood.name.as_str(), anger.name.as_str()), ("happy", "anger"));
+        for attribute in [&mood, &anger, &Attribute::from_column("speed")] {
+            assert_eq!(Attribute::from_note(&attribute.note()).as_ref(), Some(attribute));
+        }
+        assert_eq!(Attribute::from_note("nothing of the kind"), None);
         let text = "label\tfile\tgroup\ttake\tspeed\nhappy\ta.bvh\twalk\t1\t0.5\ncalm\tb.bvh\trun\t2\t\n\
                     angry\tc.bvh\twalk\t1\t\nsad\tb.bvh\twalk\t1\t2\nnormal\tc.bvh\t\t\t\nelse\tgone.bvh\t\t\t";
         let rows = table(text, &[mood, anger, Attribute::from_column("speed")]).unwrap();

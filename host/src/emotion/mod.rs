@@ -11,11 +11,14 @@
 //! | [`mod@rank`] | the ranking function: primal Newton over a graph of pairs; faces use it too |
 //! | `pairs`, [`choose_cost`] | which motion shows more than which; the cost by validation |
 //! | [`mod@regress`], `hidden` | strength -> features: ten tanh units, the output layer eliminated |
+//! | [`train()`] | from labelled clips to a model |
+//! | [`evaluate`] | reads the strength of clips; pair accuracy, rank correlation |
 //! | [`EmotionModel`] | what training makes, as a pack and back |
 //! | [`play`] | playback through the device's code |
 //! | [`made`] | a made model for tests and firmware workloads |
 
 mod choose;
+pub mod evaluate;
 pub mod features;
 mod hidden;
 pub mod keyframes;
@@ -29,6 +32,7 @@ pub mod rank;
 pub mod regress;
 mod samples;
 pub mod segment;
+mod train;
 
 pub use choose::{Choice, choose_cost};
 pub use model::{Attribute, EmotionModel, HostEmotion, MAX_KEYS, MAX_WIDTH};
@@ -36,3 +40,4 @@ pub use pairs::{Pairs, pair_accuracy, spearman};
 pub use rank::{RankOptions, Ranked, rank};
 pub use regress::{RegressOptions, Regressed, Regression, regress};
 pub use samples::Samples;
+pub use train::{Ranking, TrainError, TrainOptions, Trained, train};

@@ -5,6 +5,7 @@ use kinesic::emotion::Emotion;
 use kinesic::kernel::ROWS;
 use kinesic::model::{ATTRIBUTES, AttributeMeta, EmotionMeta, Kind, LoadError, ModelMeta};
 
+use super::features::Projection;
 use super::regress::Regression;
 use crate::pack::{PackWriter, Provenance};
 use crate::rig::{MAX_JOINTS, Rig};
@@ -54,6 +55,11 @@ pub struct EmotionModel {
     /// Local rotations `[i, j, k, w]` of every joint, keyframe by keyframe, that twists come from; the root's relative
     /// to the heading of its own keyframe.
     pub reference: Vec<[f32; 4]>,
+    /// Part of the length at which each keyframe lies on average, 0 to 1: where a reader of clips looks for it. The device
+    /// does not use it.
+    pub parts: Vec<f64>,
+    /// What velocities were divided by before the principal components were learned, 1/s. The device does not use it.
+    pub velocity_scale: f64,
 }
 
 impl EmotionModel {
@@ -94,7 +100,25 @@ impl EmotionModel {
         pack.f32s("emotion/rank", self.network.bias.len(), &single(&self.rank));
         pack.f32s("emotion/rank_bias", 1, &single(&self.rank_bias));
         pack.f32s("emotion/reference", 4, self.reference.as_flattened());
+        pack.f32s("emotion/parts", 1, &single(&self.parts));
+        pack.f32s("emotion/velocity_scale", 1, &[self.velocity_scale as f32]);
         pack.finish(provenance)
+    }
+
+    /// Features to components and back.
+    pub fn projection(&self) -> Projection {
+        let (width, count) = (self.mean.len(), self.components());
+        let scaled = |d: usize| {
+            let row = move |c: usize| self.basis[c * count + d] / if c < width / 2 { 1.0 } else { self.velocity_scale };
+            (0..width).map(row)
+        };
+        Projection {
+            mean: self.mean.clone(),
+            scale: self.velocity_scale,
+            components: (0..count).flat_map(scaled).collect(),
+            // What was left out of the pack is not in it.
+            explained: f64::NAN,
+        }
     }
 
     /// `[D x (units + inputs)]` of every keyframe, row-major, each padded to whole tiles.
@@ -162,6 +186,8 @@ impl EmotionModel {
             rank: double(pack.slice("emotion/rank", inputs * motion)?),
             rank_bias: double(pack.slice("emotion/rank_bias", inputs)?),
             reference: pack.slice("emotion/reference", keyframes * joints)?.to_vec(),
+            parts: double(pack.slice("emotion/parts", keyframes)?),
+            velocity_scale: f64::from(pack.slice::<f32>("emotion/velocity_scale", 1)?[0]),
         })
     }
 }

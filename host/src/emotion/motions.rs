@@ -1,10 +1,16 @@
 //! Labelled clips, cut into motions.
 
+use rand::SeedableRng;
+use rand::rngs::ChaCha8Rng;
+use rand::seq::SliceRandom;
+
 use super::features;
 use super::keyframes::Keyframes;
+use super::labels::Labelled;
 use super::pairs::Pairs;
-use super::segment::{Cut, Segment, cut};
-use crate::clip::Clip;
+use super::segment::{Cut, FRAME_RATE, Segment, cut};
+use crate::clip::{Clip, ReadOptions};
+use crate::prepare::{PrepareError, Source};
 use crate::rig::Rig;
 
 /// A clip on the rig, and what is known about it.
@@ -20,6 +26,38 @@ pub struct Example {
     pub group: usize,
     /// Clips of one take are held out together.
     pub take: usize,
+}
+
+/// Reads the clips of a table onto `rig`, or onto the skeleton of the first. `progress` hears of every clip before it is read.
+pub fn read(
+    rows: Vec<Labelled>,
+    rig: Option<Rig>,
+    options: &ReadOptions,
+    progress: &dyn Fn(usize),
+) -> Result<(Option<Rig>, Vec<Example>), PrepareError> {
+    let (mut rig, mut examples) = (rig, Vec::with_capacity(rows.len()));
+    for (index, row) in rows.into_iter().enumerate() {
+        progress(index);
+        let source = Source::read(&row.path, options)?;
+        let on = match &rig {
+            Some(rig) => rig,
+            None => rig.insert(source.rig()?),
+        };
+        let clip = source.on_rig(on, FRAME_RATE)?;
+        let Labelled { levels, group, take, .. } = row;
+        examples.push(Example { name: source.name(), clip, levels, group, take });
+    }
+    Ok((rig, examples))
+}
+
+/// Which takes to hold out: `share` of them, drawn by the seed. True for their rows.
+pub fn hold_out(rows: &[Labelled], share: f64, seed: u64) -> Vec<bool> {
+    let mut takes: Vec<usize> = rows.iter().map(|row| row.take).collect();
+    takes.sort_unstable();
+    takes.dedup();
+    takes.shuffle(&mut ChaCha8Rng::seed_from_u64(seed));
+    takes.truncate((share.clamp(0.0, 1.0) * takes.len() as f64).round() as usize);
+    rows.iter().map(|row| takes.contains(&row.take)).collect()
 }
 
 /// One motion of an example.
