@@ -36,3 +36,31 @@ pub(super) fn part_of(turn: Heading, part: f32) -> Heading {
     let [sin, cos] = turn.turn_from(Heading::default());
     Heading::default().turned(part * sin, 1.0 - part + part * cos)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn place(x: f32, z: f32, angle: f32) -> Place {
+        let heading = Heading::default().turned(libm::sinf(angle), libm::cosf(angle));
+        Place { ground: Vector3::new(x, 0.0, z), heading }
+    }
+
+    #[test]
+    fn places_follow_each_other() {
+        let (a, b) = (place(1.0, -2.0, 0.7), place(0.3, 0.9, -1.9));
+        let point = Vector3::new(0.4, 1.1, -0.6);
+        assert!((a.then(&b).apply(point) - a.apply(b.apply(point))).norm() < 1e-6);
+        assert!((a.undo(a.apply(point)) - point).norm() < 1e-6);
+    }
+
+    #[test]
+    fn a_part_of_a_turn_lies_between() {
+        let turn = place(0.0, 0.0, 0.6).heading;
+        assert_eq!(part_of(turn, 0.0), Heading::default());
+        let [sin, cos] = part_of(turn, 1.0).turn_from(turn);
+        assert!(sin.abs() < 1e-6 && cos > 0.999_999);
+        let [sin, _] = part_of(turn, 0.5).turn_from(Heading::default());
+        assert!((sin - libm::sinf(0.3)).abs() < 1e-3);
+    }
+}
