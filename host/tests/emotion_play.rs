@@ -184,6 +184,41 @@ fn a_cycle_goes_on_where_it_ended() {
 }
 
 #[test]
+fn a_walk_keeps_its_direction_through_changes() {
+    let file = file(2);
+    let pack = file.pack().unwrap();
+    let device = Device::load(&pack).unwrap();
+    let mut state = started([0.0; 4]);
+    // Direction of the way of the next round, rad.
+    let course = |state: &State| {
+        let mut state = *state;
+        let start = step(&device, &mut state, state.seconds()).root;
+        let way = step(&device, &mut state, 0.0).root - start;
+        way.x.atan2(way.z)
+    };
+    step(&device, &mut state, 0.0);
+    let first = course(&state);
+    for change in 0..40 {
+        // There and back at other phases.
+        for strength in [1.0, 0.0] {
+            state.strength[0] = strength;
+            for _ in 0..37 + change {
+                step(&device, &mut state, 0.011);
+            }
+        }
+    }
+    let turn = state.place().heading.turn_from(kinesic::pose::Heading::default())[0].asin();
+    let last = course(&state);
+    println!(
+        "after 80 changes and {:.0} s: {:.3} rad, of which rounds turn {turn:.3}",
+        0.011 * 2.0 * 40.0 * 57.0,
+        last - first
+    );
+    // The made walks turn on their own by less than this.
+    assert!((last - first).abs() < 0.3, "{first} {last}");
+}
+
+#[test]
 fn a_gesture_ends_stands_and_starts_again() {
     let file = gesture();
     let pack = file.pack().unwrap();

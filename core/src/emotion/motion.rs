@@ -3,10 +3,13 @@
 use nalgebra::Vector3;
 
 use super::model::Emotion;
-use super::place::Place;
+use super::place::{Place, part_of};
 use super::spline::Taps;
 use crate::model::ATTRIBUTES;
 use crate::pose::{Heading, World};
+
+/// A cycle that goes less far is on the spot, m.
+const LEAST_WAY: f32 = 0.2;
 
 /// Joint positions at the keyframes, in the motion's frame: the ground below the first keyframe's root is the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,6 +40,19 @@ impl<const JOINTS: usize, const KEYS: usize> Motion<JOINTS, KEYS> {
     pub fn share(&self, piece: usize, into: f32) -> f32 {
         let passed = self.durations.iter().take(piece).sum::<f32>() + into;
         if self.seconds > 0.0 { passed / self.seconds } else { 0.0 }
+    }
+
+    /// Direction in which the motion goes at a share of its time: of a cycle the way from its first to its last keyframe, turned
+    /// evenly on both sides of the middle; of any other motion, and of one on the spot, the first keyframe's heading.
+    pub fn course(&self, share: f32) -> Heading {
+        let Some(round) = self.round else { return Heading::default() };
+        let [sin, cos] = part_of(round.heading, share).turn_from(Heading::default());
+        let way = length([round.ground.x, round.ground.z].into_iter());
+        if way < LEAST_WAY {
+            return Heading::default().turned(sin, cos);
+        }
+        let [back, ahead] = Heading::default().turn_from(part_of(round.heading, 0.5));
+        Heading::default().turned(round.ground.x / way, round.ground.z / way).turned(back, ahead).turned(sin, cos)
     }
 
     /// Weights of the four keyframes around a point.

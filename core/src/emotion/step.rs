@@ -3,7 +3,7 @@
 use nalgebra::{Quaternion, Vector3};
 
 use super::model::Emotion;
-use super::place::{Place, part_of};
+use super::place::Place;
 use super::spline::Taps;
 use super::state::{EmotionState, Fade};
 use crate::pose::{Heading, Pose, World, forward, solve, unit};
@@ -31,7 +31,7 @@ impl<const JOINTS: usize, const KEYS: usize, const WIDTH: usize> Emotion<'_, JOI
     /// Evaluates the network where `state.strength` is not what plays, and does nothing otherwise. [`step`](Self::step) does it
     /// too: call it before where a frame has no time for it. Cost: [`multiply_adds`](Self::multiply_adds), a few hundred a joint.
     ///
-    /// The phase is kept, and the root's place on the ground. What position and velocity of the joints then differ by fades out
+    /// The phase is kept, and so are the root's place on the ground and the direction in which a cycle goes. What position and velocity of the joints then differ by fades out
     /// within [`FADE`](super::FADE) seconds, so that a change alone moves nothing and alters no velocity.
     pub fn change(&self, state: &mut EmotionState<JOINTS, KEYS>) {
         let strength = self.held(&state.strength, &state.played.unwrap_or_default());
@@ -72,13 +72,12 @@ impl<const JOINTS: usize, const KEYS: usize, const WIDTH: usize> Emotion<'_, JOI
         state.fade = Fade::start(change.positions, change.rates);
     }
 
-    /// The point below the root, and the direction that the motion would have here if it turned evenly.
+    /// The point below the root, and the direction in which the motion goes.
     fn anchor(&self, state: &EmotionState<JOINTS, KEYS>) -> Place {
         let taps = state.motion.taps(state.piece, state.into);
         let root = blend(&taps.value, state.motion.around(state.piece, 0));
-        let turn = state.motion.round.map_or_else(Heading::default, |round| round.heading);
-        let share = state.motion.share(state.piece, state.into);
-        state.place.then(&Place { ground: Vector3::new(root.x, 0.0, root.z), heading: part_of(turn, share) })
+        let heading = state.motion.course(state.motion.share(state.piece, state.into));
+        state.place.then(&Place { ground: Vector3::new(root.x, 0.0, root.z), heading })
     }
 
     /// How the joints move now.
