@@ -192,7 +192,8 @@ fn a_walk_keeps_its_direction_through_changes() {
     // Direction of the way of the next round, rad.
     let course = |state: &State| {
         let mut state = *state;
-        let start = step(&device, &mut state, state.seconds()).root;
+        let round = state.seconds();
+        let start = step(&device, &mut state, round).root;
         let way = step(&device, &mut state, 0.0).root - start;
         way.x.atan2(way.z)
     };
