@@ -40,7 +40,7 @@ blends() {
             row = data "/" $at["file"] "\t" angry "\t" sad
             print row >>(work "/" gait "-" part)
             print row >>(work "/" gait "-all")
-            if (gait != "run") print row >>(work "/any-" part)
+            if (gait != "run") { print row >>(work "/any-" part); print row >>(work "/any-all") }
         }' "$data/manifest.tsv"
     for rows in "$work"/*-corners "$work"/*-inside "$work"/*-all; do
         { printf 'file\tangry\tsad\n'; cat "$rows"; } >"$rows.tsv"
