@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The tables of docs/emotion.md. Label tables are made from the data's manifest.tsv into a temporary folder; motions, if wanted, go to
 # the folder EMOTION_MOTIONS, which must lie outside the repository: they are made from other people's clips.
-# usage: docs/emotion.sh [accuracy|blends|keyframes|synthesis|mix|playback]...   (default: all)
+# usage: docs/emotion.sh [accuracy|blends|keyframes|synthesis|units|mix|playback]...   (default: all)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 data=$(realpath "${KINESIC_DATA:-../shared/data}")
@@ -56,10 +56,10 @@ motions=${EMOTION_MOTIONS:-$work}
 # Packs that several tables use; everything is trained on.
 "$kinesic" train emotion --labels "$work/bandai1-walk.tsv" --order 'anger:angry>normal>sad' --hold-out 0 \
     --out "$motions/anger.kin" >"$work/anger.txt"
-"$kinesic" train emotion --labels "$work/any-all.tsv" --attribute angry --attribute sad --hold-out 0 \
+"$kinesic" train emotion --labels "$work/walk-all.tsv" --attribute angry --attribute sad --hold-out 0 \
     --out "$motions/blends.kin" >"$work/blends.txt"
 
-for table in "${@:-accuracy blends keyframes synthesis mix playback}"; do
+for table in "${@:-accuracy blends keyframes synthesis units mix playback}"; do
     for table in $table; do
         echo "== $table"
         case $table in
@@ -92,15 +92,29 @@ for table in "${@:-accuracy blends keyframes synthesis mix playback}"; do
         synthesis)
             cat "$work/anger.txt"
             "$bench" synthesis "$motions/anger.kin"
-            for action in raise-up-both-hands run walk; do
-                "$kinesic" train emotion --labels "$work/bandai2-$action.tsv" --order 'active>normal>exhausted' --hold-out 0 \
-                    --out "$motions/$action.kin" >/dev/null
-                echo "bandai2, $action:"
-                "$bench" synthesis "$motions/$action.kin" | tail -1
+            ;;
+        units)
+            for units in 3 10; do
+                for action in raise-up-both-hands wave-left-hand run walk; do
+                    "$kinesic" train emotion --labels "$work/bandai2-$action.tsv" --order 'active>normal>exhausted' --hold-out 0 \
+                        --hidden "$units" --out "$motions/$action-$units.kin" >/dev/null
+                    echo "$units units, bandai2, $action:"
+                    "$bench" synthesis "$motions/$action-$units.kin" | tail -1
+                done
+                "$kinesic" train emotion --labels "$work/bandai1-walk.tsv" --order 'happy>normal>sad' \
+                    --order 'anger:angry>normal=happy=sad' --hold-out 0 --hidden "$units" --out "$motions/two-$units.kin" >/dev/null
+                echo "$units units, bandai1, walk, two attributes:"
+                "$bench" synthesis "$motions/two-$units.kin" | grep Spearman
             done
             ;;
-        mix) cat "$work/blends.txt"; "$bench" mix "$motions/blends.kin" ;;
-        playback) cargo test --release --locked -q -p kinesic-host --test emotion_play -- --nocapture ;;
+        mix)
+            cat "$work/blends.txt"
+            "$bench" mix "$motions/blends.kin"
+            "$kinesic" train emotion --labels "$work/bandai1-walk.tsv" --order 'happy>normal>sad' \
+                --order 'anger:angry>normal=happy=sad' --hold-out 0 --out "$motions/two.kin" >/dev/null
+            "$bench" mix "$motions/two.kin"
+            ;;
+        playback) cargo test --release --locked -q -p kinesic-host --test emotion_play -- --nocapture ;; # see emotion-playback.md
         *) echo "docs/emotion.sh: no table is called $table" >&2; exit 1 ;;
         esac
     done

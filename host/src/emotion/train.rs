@@ -27,7 +27,8 @@ pub struct TrainOptions {
     pub keyframes: usize,
     /// Principal components of a keyframe; the paper has 40 and 80.
     pub components: usize,
-    /// Hidden units of the network; the paper has 10.
+    /// Hidden units of the network; the paper has 10, for a thousand motions. With a few dozen, fewer follow what is asked better:
+    /// docs/emotion.md.
     pub hidden: usize,
     /// How clips are cut; `None`: cycles if nearly all are gaits.
     pub cut: Option<Cut>,
@@ -37,7 +38,7 @@ pub struct TrainOptions {
 
 impl Default for TrainOptions {
     fn default() -> Self {
-        Self { keyframes: 13, components: 40, hidden: 10, cut: None, seed: 1 }
+        Self { keyframes: 13, components: 40, hidden: 3, cut: None, seed: 1 }
     }
 }
 

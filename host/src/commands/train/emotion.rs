@@ -68,8 +68,8 @@ pub struct Args {
     /// Principal components of a keyframe
     #[arg(long, value_name = "N", default_value_t = 40)]
     components: usize,
-    /// Hidden units of the network from strengths to keyframes
-    #[arg(long, value_name = "N", default_value_t = 10)]
+    /// Hidden units of the network from strengths to keyframes: 3 for dozens of motions, 10 for a thousand
+    #[arg(long, value_name = "N", default_value_t = 3)]
     hidden: usize,
     /// Share of the takes, 0 to 0.9, that is not trained on but measured
     #[arg(long, value_name = "SHARE", default_value_t = 0.2, value_parser = share)]
