@@ -6,7 +6,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 data=$(realpath "${KINESIC_DATA:-../shared/data}")
 export KINESIC_DATA=$data
-cargo build --release --locked -q -p kinesic-host --bins --example emotion_bench
+cargo build --release --locked -q -p kinesic-host --bins --example emotion_bench --example emotion_sweep
 target=${CARGO_TARGET_DIR:-target}/release
 kinesic=$target/kinesic
 bench=$target/examples/emotion_bench
@@ -114,7 +114,13 @@ for table in "${@:-accuracy blends keyframes synthesis units mix playback}"; do
                 --order 'anger:angry>normal=happy=sad' --hold-out 0 --out "$motions/two.kin" >/dev/null
             "$bench" mix "$motions/two.kin"
             ;;
-        playback) cargo test --release --locked -q -p kinesic-host --test emotion_play -- --nocapture ;; # see emotion-playback.md
+        playback)
+            for action in walk raise-up-both-hands wave-left-hand; do
+                "$kinesic" train emotion --labels "$work/bandai2-$action.tsv" --order 'exhausted>normal>youthful' --hold-out 0 \
+                    --out "$motions/tired-$action.kin" >/dev/null
+            done
+            "$target/examples/emotion_sweep" "$motions"/tired-*.kin "$motions/anger.kin" "$motions/blends.kin"
+            ;;
         *) echo "docs/emotion.sh: no table is called $table" >&2; exit 1 ;;
         esac
     done

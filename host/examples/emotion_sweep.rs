@@ -53,8 +53,9 @@ fn row(path: &str, emotion: &HostEmotion) {
     let swept = extremes(&play(emotion, 240, &wave));
     let leaping = extremes(&play(emotion, 240, &|t| if (2.0 * t) as usize % 2 == 0 { 0.0 } else { 1.0 }));
     let [moved, faster] = jumps(emotion);
+    let name = Path::new(path).file_stem().unwrap_or_default().to_string_lossy();
     println!(
-        "| {path} | {:.4} | {:.4} | {faster:.3} | {:.1} | {:.0} | {:.0} | {:.0} |",
+        "| {name} | {:.4} | {:.4} | {faster:.3} | {:.1} | {:.0} | {:.0} | {:.0} |",
         1e3 * differ,
         1e3 * moved,
         largest(&steady, 0).max(swept[0]),
