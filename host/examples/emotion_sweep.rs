@@ -3,7 +3,9 @@
 //! `cargo run --release -p kinesic-host --example emotion_sweep -- PACK.kin [PACK.kin ...]`
 //!
 //! Joint positions are those of the poses that come out, through forward kinematics. "Jump" is what a change of strength alone
-//! does to a joint's position, and to its speed (over a tenth of a millisecond), at 500 moments of ten seconds.
+//! does to a joint's position, and to its speed (over a tenth of a millisecond), at 500 moments of ten seconds. The last three columns are
+//! the largest acceleration of a joint: at 21 strengths that stay, swept from end to end of the range and back every two seconds,
+//! leaping from end to end every half second.
 
 use std::path::Path;
 
@@ -48,7 +50,7 @@ fn row(path: &str, emotion: &HostEmotion) {
             differ = differ.max(apart(slow, &fast[step * at]));
         }
     }
-    let steady: Vec<[f32; 2]> = [0.0, 0.5, 1.0].map(|part| extremes(&play(emotion, 240, &|_| part))).to_vec();
+    let steady: Vec<[f32; 2]> = (0..=20).map(|part| extremes(&play(emotion, 240, &|_| part as f32 / 20.0))).collect();
     let largest = |of: &[[f32; 2]], at: usize| of.iter().map(|x| x[at]).fold(0.0, f32::max);
     let swept = extremes(&play(emotion, 240, &wave));
     let leaping = extremes(&play(emotion, 240, &|t| if (2.0 * t) as usize % 2 == 0 { 0.0 } else { 1.0 }));

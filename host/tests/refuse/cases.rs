@@ -91,7 +91,7 @@ pub const CASES: &[(&str, &str)] = &[
     ("synth moods.kin --strength weary=1,swaying --out o.bvh", "NAME=STRENGTH"),
     ("synth moods.kin --strength weary=1 --to weary --out o.bvh", "--to"),
     ("synth moods.kin --strength weary=1 --fps 0 --out o.bvh", "1 to 1000"),
-    ("synth moods.kin --strength weary=1 --seconds -1 --out o.bvh", "--seconds"),
+    ("synth moods.kin --strength weary=1 --seconds 0 --out o.bvh", "--seconds"),
     ("synth moods.kin --strength weary=1 --seconds 1e9 --out o.bvh", "3600"),
     ("synth moods.kin --strength weary=1 --out o.txt", ".bvh"),
     ("apply moods.kin walk.bvh --out o.bvh", "kinesic synth"),
