@@ -27,7 +27,7 @@ static TABLE: LimitTable = LimitTable {
 };
 
 /// No engine, so their capacities are 0; a style is added with `with_translator` and a `STATES`.
-type Arm<'a> = Pipeline<'a, JOINTS, 0, 0, 0, 0>;
+type Arm<'a> = Pipeline<'a, JOINTS, 0, 0, 0, 0, 0>;
 type ArmState = PipelineState<JOINTS, 0, 0, 0>;
 
 /// One frame: a pose, or none, in; pulse widths in microseconds out, 1500 at zero, 637 a radian.

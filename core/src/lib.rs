@@ -10,6 +10,7 @@
 //! | [`translate`] | style translation by linear time-invariant state-space models | Dong 2018 after Hsu 2005 |
 //! | [`mechanics`] | what the body must do, what is expression: decouple, modulate, mix, blend | Boehs 2017 |
 //! | [`components`] | style components applied to a live pose or to a stored stream of weights | Phong 2018 |
+//! | [`emotion`] | strength of an emotion -> keyframes -> spline -> pose | Chan 2019 |
 //! | [`face`] | strength of a facial expression -> landmarks | Chan 2019 |
 //! | [`limit`] | the last stage: frames at fault quarantined; position, velocity and acceleration limits | |
 //! | [`pipeline`] | everything that runs in a frame as one type with one step: engines, mix, limit | |
@@ -47,6 +48,7 @@
 compile_error!("packs are little-endian and used in place: kinesic needs a little-endian target");
 
 pub mod components;
+pub mod emotion;
 pub mod face;
 pub mod kernel;
 pub mod limit;
@@ -57,6 +59,7 @@ pub mod pose;
 pub mod translate;
 
 pub use components::{Components, ComponentsState};
+pub use emotion::{Emotion, EmotionState};
 pub use face::{FaceState, FaceSynth};
 pub use limit::{LimitState, LimitTable, Limiter};
 pub use mechanics::{BodyMechanics, MechanicsState};

@@ -1,5 +1,6 @@
 //! Every engine, 100 frames. A new engine gets a function and a line in [`step_all`].
 
+use kinesic::emotion::{Emotion, EmotionState, Place};
 use kinesic::face::{FaceState, FaceSynth, POINTS};
 use kinesic::mechanics::{Blend, Decoupled, Modulation, Window, mix, modulate};
 use kinesic::{BodyMechanics, Components, ComponentsState, MechanicsState, Pack, Pose, Translator, TranslatorState};
@@ -15,6 +16,7 @@ pub fn step_all(pack: &Pack, frames: &mut Frames) {
     mechanics(pack, frames);
     components(pack, frames);
     face(pack, frames);
+    emotion(pack, frames);
 }
 
 fn translator(pack: &Pack, frames: &mut Frames) {
@@ -61,6 +63,27 @@ fn components(pack: &Pack, frames: &mut Frames) {
         }
         model.step(&mut state, &frames.pose(), &mut styled);
         model.step_stored(&mut state, &mut styled);
+    }
+}
+
+fn emotion(pack: &Pack, frames: &mut Frames) {
+    let Ok(model) = Emotion::<JOINTS, 32, 64>::load(pack) else { return };
+    let mut state = Box::new(EmotionState::<JOINTS, 32>::new());
+    let mut pose = Pose::identity();
+    for step in 0..STEPS {
+        if step % 10 == 0 {
+            state.strength = std::array::from_fn(|_| frames.control());
+        }
+        match frames.next() % 32 {
+            0 => model.restart(&mut state),
+            1 => state.put(Place::default()),
+            2 => model.change(&mut state),
+            _ => {}
+        }
+        model.step(&mut state, frames.control(), &mut pose);
+        let mut motion = [0.0; 1024];
+        model.motion(&state.strength, &mut motion);
+        model.score(&motion);
     }
 }
 

@@ -59,6 +59,12 @@ pub fn rust_module(file: &PackFile, origin: &str) -> Result<String, LoadError> {
             ModelMeta::Components(meta) => {
                 constant("Style components", "COMPONENTS", &meta.count, "usize");
             }
+            ModelMeta::Emotion(meta) => {
+                constant("Keyframes of the motion", "KEYS", &meta.keyframes, "usize");
+                let inputs = meta.hidden + meta.attributes.iter().flatten().count() as u32;
+                let width = meta.components.max(inputs);
+                constant("Components of a keyframe, or inputs of the output layer", "WIDTH", &width, "usize");
+            }
             ModelMeta::Face(meta) => {
                 constant("Hidden units of a cluster of head pose", "UNITS", &meta.hidden, "usize");
             }
@@ -94,6 +100,7 @@ fn engine(meta: &ModelMeta) -> (&'static str, &'static str) {
         ModelMeta::Translator(_) => ("Translator::<JOINTS, STATES>", "TranslatorState"),
         ModelMeta::Mechanics(_) => ("BodyMechanics::<JOINTS, UNITS, WINDOW>", "MechanicsState"),
         ModelMeta::Components(_) => ("Components::<JOINTS, COMPONENTS>", "ComponentsState"),
+        ModelMeta::Emotion(_) => ("Emotion::<JOINTS, KEYS, WIDTH>", "EmotionState"),
         ModelMeta::Face(_) => ("FaceSynth::<UNITS>", "FaceState"),
         ModelMeta::Limits(_) => ("Limiter::<JOINTS>", "LimitState"),
     }

@@ -28,3 +28,24 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     let [a, b, c, d, e, f, g, h] = lanes;
     ((a + b) + (c + d)) + ((e + f) + (g + h)) + rest
 }
+
+/// Offset and slope of the regression of the second number on the first; `None` where the first is always the same.
+pub fn line(points: &[(f64, f64)]) -> Option<(f64, f64)> {
+    let count = points.len() as f64;
+    let [x, y] = points.iter().fold([0.0; 2], |[a, b], (x, y)| [a + x / count, b + y / count]);
+    let squares: f64 = points.iter().map(|(a, _)| (a - x) * (a - x)).sum();
+    let slope = points.iter().map(|(a, b)| (a - x) * (b - y)).sum::<f64>() / squares;
+    (squares > 0.0).then_some((y - slope * x, slope))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_through_points() {
+        let (offset, slope) = line(&[(0.0, 1.0), (1.0, 3.0), (2.0, 5.0)]).unwrap();
+        assert!((offset - 1.0).abs() < 1e-12 && (slope - 2.0).abs() < 1e-12);
+        assert_eq!(line(&[(1.0, 1.0), (1.0, 3.0)]), None);
+    }
+}

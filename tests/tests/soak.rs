@@ -23,7 +23,7 @@ struct Soaked {
 
 fn soak(packs: &Packs, engine: &str, frames: u64) -> Soaked {
     let device = packs.device(engine);
-    let (mut state, mut motion, mut out) = (new_state(), Motion::new(11), Pose::identity());
+    let (mut state, mut motion, mut out) = (new_state(engine), Motion::new(11), Pose::identity());
     let mut soaked = Soaked { hash: 0xcbf2_9ce4_8422_2325, ..Soaked::default() };
     for frame in 0..frames {
         let input = motion.next();

@@ -253,6 +253,11 @@ impl<'a, const JOINTS: usize> Limiter<'a, JOINTS> {
         self.root_speed
     }
 
+    /// Time of a frame, s.
+    pub(crate) fn frame_time(&self) -> f32 {
+        self.frame_time
+    }
+
     /// Number of joints.
     pub fn joints(&self) -> usize {
         self.table.kinds.len()

@@ -16,6 +16,8 @@ pub enum Kind {
     Mechanics = 2,
     /// Style components.
     Components = 3,
+    /// Strength of an emotion in a motion.
+    Emotion = 4,
     /// Strength of a facial expression.
     Face = 5,
     /// Joint limits.
@@ -35,6 +37,7 @@ impl Kind {
             1 => Some(Self::Translator),
             2 => Some(Self::Mechanics),
             3 => Some(Self::Components),
+            4 => Some(Self::Emotion),
             5 => Some(Self::Face),
             6 => Some(Self::Limits),
             _ => None,
@@ -84,6 +87,8 @@ pub enum ModelMeta<'a> {
     Face(#[serde(borrow)] FaceMeta<'a>),
     /// Joint limits; their tensors are `limit/...`.
     Limits(LimitsMeta),
+    /// Strength of an emotion in a motion; its tensors are `emotion/...`.
+    Emotion(#[serde(borrow)] EmotionMeta<'a>),
 }
 
 impl<'a> ModelMeta<'a> {
@@ -110,6 +115,11 @@ impl<'a> ModelMeta<'a> {
     /// The joint limits' rates and times, if it is such a table.
     pub fn limits(self) -> Option<LimitsMeta> {
         if let Self::Limits(meta) = self { Some(meta) } else { None }
+    }
+
+    /// The emotion model's shape, if it is one.
+    pub fn emotion(self) -> Option<EmotionMeta<'a>> {
+        if let Self::Emotion(meta) = self { Some(meta) } else { None }
     }
 }
 
@@ -177,6 +187,38 @@ pub struct FaceMeta<'a> {
     /// Hidden units of a cluster's network.
     pub hidden: u32,
     /// Strengths that nearly all training faces lie between; targets are held inside.
+    pub strength: [f32; 2],
+}
+
+/// Attributes that one emotion model mixes at most.
+pub const ATTRIBUTES: usize = 4;
+
+/// Shape of a model of the strength of emotions in a motion.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EmotionMeta<'a> {
+    /// Name of the motion: a walk, a wave.
+    pub motion: &'a str,
+    /// What may be asked for, first to last; the rest is `None`.
+    #[serde(borrow)]
+    pub attributes: [Option<AttributeMeta<'a>>; ATTRIBUTES],
+    /// Keyframes of the motion, K.
+    pub keyframes: u32,
+    /// Principal components of a keyframe, D.
+    pub components: u32,
+    /// Hidden units of the network.
+    pub hidden: u32,
+    /// True for a cycle: the last keyframe is the first one of the next round, farther on.
+    pub cycle: bool,
+    /// Shortest and longest time between two keyframes, s.
+    pub duration: [f32; 2],
+}
+
+/// One attribute of a motion, in units of its ranking function.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct AttributeMeta<'a> {
+    /// Name, as the training table called it.
+    pub name: &'a str,
+    /// Strengths that nearly all training motions lie between; what is asked for is held inside.
     pub strength: [f32; 2],
 }
 

@@ -10,8 +10,8 @@ mod tensor;
 
 pub use error::LoadError;
 pub use meta::{
-    ComponentsMeta, FaceMeta, Form, JointMeta, Kind, LimitsMeta, List, MechanicsMeta, Metadata, ModelMeta, TensorMeta,
-    TensorType, TranslatorMeta,
+    ATTRIBUTES, AttributeMeta, ComponentsMeta, EmotionMeta, FaceMeta, Form, JointMeta, Kind, LimitsMeta, List,
+    MechanicsMeta, Metadata, ModelMeta, TensorMeta, TensorType, TranslatorMeta,
 };
 
 pub use tensor::Element;

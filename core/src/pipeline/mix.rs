@@ -13,12 +13,14 @@ pub struct Weights {
     pub translate: f32,
     /// Style components.
     pub components: f32,
+    /// The motion that plays at an emotion's strength, whatever the source does.
+    pub emotion: f32,
 }
 
 impl Default for Weights {
-    /// Every engine that is there alike, the source not.
+    /// Every engine that is there alike, but not the source, nor the emotion's motion, which is no version of it.
     fn default() -> Self {
-        Self { source: 0.0, mechanics: 1.0, translate: 1.0, components: 1.0 }
+        Self { source: 0.0, mechanics: 1.0, translate: 1.0, components: 1.0, emotion: 0.0 }
     }
 }
 

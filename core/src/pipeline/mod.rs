@@ -3,7 +3,7 @@
 //! | stage | what goes on to the next |
 //! |---|---|
 //! | guard | sound source frames; while there is none the engines stand still, so no NaN gets into their filters |
-//! | engines | those that are there, each on the source frame: body mechanics modulated, style translated, style components |
+//! | engines | those that are there, each on the source frame: body mechanics modulated, style translated, style components; and the motion that plays at an emotion's strength, which looks at no frame |
 //! | mix | the weighted mean of what they give |
 //! | limit | a pose within the joints' limits, whatever came before: [`limit`](crate::limit) |
 //!

@@ -1,6 +1,7 @@
 //! The stages: checked, immutable views.
 
 use crate::components::Components;
+use crate::emotion::Emotion;
 use crate::limit::Limiter;
 use crate::mechanics::BodyMechanics;
 use crate::model::{LoadError, Pack};
@@ -11,7 +12,8 @@ const LEAP: f32 = 4.0;
 
 /// Engines, mix and limits. Capacities of an engine that is not used may be 0.
 ///
-/// `STATES` is the translator's, `UNITS` and `WINDOW` those of body mechanics, `COUNT` that of the components.
+/// `STATES` is the translator's, `UNITS` and `WINDOW` those of body mechanics, `COUNT` the components of style components and of
+/// a keyframe (the emotion's `WIDTH`), `KEYS` the emotion's.
 #[derive(Clone, Copy, Debug)]
 pub struct Pipeline<
     'a,
@@ -20,22 +22,31 @@ pub struct Pipeline<
     const UNITS: usize,
     const WINDOW: usize,
     const COUNT: usize,
+    const KEYS: usize,
 > {
     pub(super) translate: Option<Translator<'a, JOINTS, STATES>>,
     pub(super) mechanics: Option<BodyMechanics<'a, JOINTS, UNITS, WINDOW>>,
     pub(super) components: Option<Components<'a, JOINTS, COUNT>>,
+    pub(super) emotion: Option<Emotion<'a, JOINTS, KEYS, COUNT>>,
     pub(super) limit: Limiter<'a, JOINTS>,
     /// Travel of the root in a frame, m, that is no motion.
     pub(super) leap: f32,
 }
 
-impl<'a, const JOINTS: usize, const STATES: usize, const UNITS: usize, const WINDOW: usize, const COUNT: usize>
-    Pipeline<'a, JOINTS, STATES, UNITS, WINDOW, COUNT>
+impl<
+    'a,
+    const JOINTS: usize,
+    const STATES: usize,
+    const UNITS: usize,
+    const WINDOW: usize,
+    const COUNT: usize,
+    const KEYS: usize,
+> Pipeline<'a, JOINTS, STATES, UNITS, WINDOW, COUNT, KEYS>
 {
     /// Limits alone: the source passes as far as they allow.
     pub fn new(limit: Limiter<'a, JOINTS>) -> Self {
         let leap = LEAP * limit.root_step();
-        Self { translate: None, mechanics: None, components: None, limit, leap }
+        Self { translate: None, mechanics: None, components: None, emotion: None, limit, leap }
     }
 
     /// Adds style translation. An engine for another number of joints than the limits have is refused.
@@ -59,6 +70,13 @@ impl<'a, const JOINTS: usize, const STATES: usize, const UNITS: usize, const WIN
         Ok(self)
     }
 
+    /// Adds a motion that plays at an emotion's strength; its weight is 0 until somebody gives it one.
+    pub fn with_emotion(mut self, engine: Emotion<'a, JOINTS, KEYS, COUNT>) -> Result<Self, LoadError> {
+        self.same_joints(engine.skeleton().joints())?;
+        self.emotion = Some(engine);
+        Ok(self)
+    }
+
     /// Everything that a style pack holds. The limits must be there; an engine that is there must fit.
     pub fn load(pack: &Pack<'a>) -> Result<Self, LoadError> {
         let mut pipeline = Self::new(Limiter::load(pack)?);
@@ -71,6 +89,9 @@ impl<'a, const JOINTS: usize, const STATES: usize, const UNITS: usize, const WIN
         }
         if models.iter().any(|model| model.components().is_some()) {
             pipeline = pipeline.with_components(Components::load(pack)?)?;
+        }
+        if models.iter().any(|model| model.emotion().is_some()) {
+            pipeline = pipeline.with_emotion(Emotion::load(pack)?)?;
         }
         Ok(pipeline)
     }

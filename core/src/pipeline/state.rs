@@ -4,13 +4,14 @@ use nalgebra::Vector3;
 
 use super::Weights;
 use crate::components::ComponentsState;
+use crate::emotion::EmotionState;
 use crate::limit::{LimitReport, LimitState};
 use crate::mechanics::{MechanicsState, Modulation};
 use crate::translate::TranslatorState;
 
 /// The states of all stages. Controls may change at any frame.
 #[derive(Clone, Debug)]
-pub struct PipelineState<const JOINTS: usize, const STATES: usize, const WINDOW: usize, const COUNT: usize> {
+pub struct PipelineState<const JOINTS: usize, const STATES: usize, const WINDOW: usize, const KEYS: usize> {
     /// Style translation; its `controls` are the user's.
     pub translate: TranslatorState<JOINTS, STATES>,
     pub(super) mechanics: MechanicsState<JOINTS, WINDOW>,
@@ -18,6 +19,8 @@ pub struct PipelineState<const JOINTS: usize, const STATES: usize, const WINDOW:
     pub modulation: Modulation<JOINTS>,
     /// Style components; their `controls` are the user's.
     pub components: ComponentsState<JOINTS>,
+    /// The motion that plays at an emotion's strength; its `strength` is the user's.
+    pub emotion: EmotionState<JOINTS, KEYS>,
     /// How much each stream counts.
     pub weights: Weights,
     pub(super) limit: LimitState<JOINTS>,
@@ -26,8 +29,8 @@ pub struct PipelineState<const JOINTS: usize, const STATES: usize, const WINDOW:
     pub(super) last_root: Vector3<f32>,
 }
 
-impl<const JOINTS: usize, const STATES: usize, const WINDOW: usize, const COUNT: usize>
-    PipelineState<JOINTS, STATES, WINDOW, COUNT>
+impl<const JOINTS: usize, const STATES: usize, const WINDOW: usize, const KEYS: usize>
+    PipelineState<JOINTS, STATES, WINDOW, KEYS>
 {
     /// Everything at rest, full strength, expression as observed.
     pub fn new() -> Self {
@@ -36,6 +39,7 @@ impl<const JOINTS: usize, const STATES: usize, const WINDOW: usize, const COUNT:
             mechanics: MechanicsState::new(),
             modulation: Modulation::default(),
             components: ComponentsState::new(),
+            emotion: EmotionState::new(),
             weights: Weights::default(),
             limit: LimitState::new(),
             engine_faults: 0,
@@ -49,6 +53,7 @@ impl<const JOINTS: usize, const STATES: usize, const WINDOW: usize, const COUNT:
         self.translate.reset();
         self.mechanics = MechanicsState::new();
         self.components.reset();
+        self.emotion.reset();
     }
 
     /// The last stage: pose, servo angles, report.
@@ -67,8 +72,8 @@ impl<const JOINTS: usize, const STATES: usize, const WINDOW: usize, const COUNT:
     }
 }
 
-impl<const JOINTS: usize, const STATES: usize, const WINDOW: usize, const COUNT: usize> Default
-    for PipelineState<JOINTS, STATES, WINDOW, COUNT>
+impl<const JOINTS: usize, const STATES: usize, const WINDOW: usize, const KEYS: usize> Default
+    for PipelineState<JOINTS, STATES, WINDOW, KEYS>
 {
     fn default() -> Self {
         Self::new()

@@ -4,12 +4,18 @@ use super::{Mix, Pipeline, PipelineState};
 use crate::mechanics::{Decoupled, MechanicsState, modulate};
 use crate::pose::Pose;
 
-impl<const JOINTS: usize, const STATES: usize, const UNITS: usize, const WINDOW: usize, const COUNT: usize>
-    Pipeline<'_, JOINTS, STATES, UNITS, WINDOW, COUNT>
+impl<
+    const JOINTS: usize,
+    const STATES: usize,
+    const UNITS: usize,
+    const WINDOW: usize,
+    const COUNT: usize,
+    const KEYS: usize,
+> Pipeline<'_, JOINTS, STATES, UNITS, WINDOW, COUNT, KEYS>
 {
     /// Puts the state where the robot is, see [`Limiter::start`](crate::Limiter::start), and the translator's filters where they
     /// would be had it always stood there. A pose that is not sound is ignored.
-    pub fn start(&self, state: &mut PipelineState<JOINTS, STATES, WINDOW, COUNT>, pose: &Pose<JOINTS>) {
+    pub fn start(&self, state: &mut PipelineState<JOINTS, STATES, WINDOW, KEYS>, pose: &Pose<JOINTS>) {
         state.change_model();
         self.limit.start(&mut state.limit, pose);
         if let (Some(engine), true) = (&self.translate, pose.is_sound(self.limit.joints())) {
@@ -20,7 +26,7 @@ impl<const JOINTS: usize, const STATES: usize, const UNITS: usize, const WINDOW:
     /// One frame: `frame` in, or `None` where none came; a pose within the limits out. Infallible. Cost: the stages'.
     pub fn step(
         &self,
-        state: &mut PipelineState<JOINTS, STATES, WINDOW, COUNT>,
+        state: &mut PipelineState<JOINTS, STATES, WINDOW, KEYS>,
         frame: Option<&Pose<JOINTS>>,
         out: &mut Pose<JOINTS>,
     ) {
@@ -35,12 +41,18 @@ impl<const JOINTS: usize, const STATES: usize, const UNITS: usize, const WINDOW:
                 let mixed = self.mix(state, source);
                 self.limit.advance(&mut state.limit, Ok(&mixed), out);
             }
-            Err(fault) => self.limit.advance(&mut state.limit, Err(fault), out),
+            Err(fault) => {
+                if let Some(engine) = &self.emotion {
+                    // It needs no frame, and its clock runs on.
+                    engine.advance(&mut state.emotion, self.limit.frame_time());
+                }
+                self.limit.advance(&mut state.limit, Err(fault), out);
+            }
         }
     }
 
     /// What the engines make of a sound frame.
-    fn mix(&self, state: &mut PipelineState<JOINTS, STATES, WINDOW, COUNT>, source: &Pose<JOINTS>) -> Pose<JOINTS> {
+    fn mix(&self, state: &mut PipelineState<JOINTS, STATES, WINDOW, KEYS>, source: &Pose<JOINTS>) -> Pose<JOINTS> {
         let mut mix = Mix::new(source, state.weights.source);
         let mut pose = *source;
         if let Some(engine) = &self.mechanics {
@@ -67,6 +79,14 @@ impl<const JOINTS: usize, const STATES: usize, const UNITS: usize, const WINDOW:
                 mix.add(&pose, state.weights.components);
             } else {
                 state.components.reset();
+            }
+        }
+        if let Some(engine) = &self.emotion {
+            engine.step(&mut state.emotion, self.limit.frame_time(), &mut pose);
+            if self.sound(&pose, &mut state.engine_faults) {
+                mix.add(&pose, state.weights.emotion);
+            } else {
+                state.emotion.reset();
             }
         }
         *mix.pose()

@@ -4,6 +4,7 @@
 //! its pack and input here, an entry in `budgets.toml`.
 
 mod components;
+mod emotion;
 mod face;
 mod kernel;
 mod limit;
@@ -86,6 +87,8 @@ const ALL: &[(&str, Make)] = &[
     ("components", components::prepare),
     ("limit", limit::prepare),
     ("face", face::prepare),
+    ("emotion-change", emotion::change),
+    ("emotion-play", emotion::play),
     ("kernel-f32", kernel::f32),
     ("kernel-i8", kernel::i8),
 ];

@@ -6,6 +6,7 @@
 
 pub mod components;
 mod digest;
+pub mod emotion;
 pub mod face;
 mod frames;
 pub mod kernel;

@@ -180,7 +180,7 @@ fn play(
         true => ("--stored: the pack holds no style components, which alone store a motion", "name a clip to play"),
         false => (
             "the pack holds neither a translator nor style components",
-            "for body mechanics there are kinesic decouple, modulate, mix and blend",
+            "for body mechanics there are kinesic decouple, modulate, mix and blend, for an emotion kinesic synth",
         ),
     };
     Err(miette!(help = help, "{}: {found}", args.pack.display()))

@@ -6,6 +6,7 @@ use kinesic::Pack;
 use kinesic::model::{JointMeta, MAGIC, ModelMeta};
 use kinesic_host::clip::{self, JointMap};
 use kinesic_host::components::HostComponents;
+use kinesic_host::emotion::HostEmotion;
 use kinesic_host::face::HostFace;
 use kinesic_host::limit::HostLimiter;
 use kinesic_host::mechanics::HostMechanics;
@@ -165,6 +166,23 @@ fn model(pack: &Pack, meta: &ModelMeta, joints: usize) -> miette::Result<ModelRe
                 "plausible_strength": meta.strength,
             });
             ("components", figures)
+        }
+        ModelMeta::Emotion(meta) => {
+            let emotion = HostEmotion::load(pack).into_diagnostic()?;
+            let width = meta.components.max(meta.hidden + emotion.attributes() as u32);
+            let strengths: serde_json::Map<String, serde_json::Value> =
+                meta.attributes.iter().flatten().map(|a| (a.name.to_owned(), json!(a.strength))).collect();
+            let figures = json!({
+                "motion": meta.motion,
+                "cycle": meta.cycle,
+                "keyframes": meta.keyframes,
+                "components": meta.components,
+                "hidden": meta.hidden,
+                "multiply_adds_per_change_of_strength": emotion.multiply_adds(),
+                "capacity": format!("Emotion::<{joints}, {}, {width}>", meta.keyframes),
+                "plausible_strengths": strengths,
+            });
+            ("emotion", figures)
         }
         ModelMeta::Face(meta) => {
             let face = HostFace::load(pack).into_diagnostic()?;

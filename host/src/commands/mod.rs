@@ -19,6 +19,8 @@ mod mix;
 mod modulate;
 mod output;
 mod quantize;
+mod score;
+mod synth;
 mod train;
 mod view;
 
@@ -57,9 +59,11 @@ enum Command {
     Blend(blend::Args),
     View(view::Args),
     Quantize(quantize::Args),
+    Score(score::Args),
     Export(export::Args),
     Completions(completions::Args),
     Face(face::Args),
+    Synth(synth::Args),
 }
 
 /// Runs a command line.
@@ -76,9 +80,11 @@ pub fn run(cli: Cli) -> miette::Result<()> {
         Command::Blend(args) => blend::run(&args),
         Command::View(args) => view::run(&args),
         Command::Quantize(args) => quantize::run(&args),
+        Command::Score(args) => score::run(&args),
         Command::Export(args) => export::run(&args),
         Command::Completions(args) => completions::run(&args),
         Command::Face(args) => face::run(&args),
+        Command::Synth(args) => synth::run(&args),
     }
 }
 

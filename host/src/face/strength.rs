@@ -10,7 +10,7 @@ use rand::rngs::ChaCha8Rng;
 
 use super::shape::region_local;
 use crate::emotion::{Pairs, RankOptions, Samples, choose_cost, rank};
-use crate::vector::dot;
+use crate::vector::{dot, line};
 
 /// Pairs that a function is fitted on at most, drawn from all: more change nothing that the faces can tell.
 const PAIRS: [usize; 2] = [200_000, 20_000];
@@ -162,15 +162,6 @@ fn deviation(values: &[f64]) -> Option<f64> {
     (deviation > 1e-12).then_some(deviation)
 }
 
-/// Offset and slope of the regression of the second number on the first; `None` where the first is always the same.
-fn line(points: &[(f64, f64)]) -> Option<(f64, f64)> {
-    let count = points.len() as f64;
-    let [x, y] = points.iter().fold([0.0; 2], |[a, b], (x, y)| [a + x / count, b + y / count]);
-    let squares: f64 = points.iter().map(|(a, _)| (a - x) * (a - x)).sum();
-    let slope = points.iter().map(|(a, b)| (a - x) * (b - y)).sum::<f64>() / squares;
-    (squares > 0.0).then_some((y - slope * x, slope))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -180,12 +171,5 @@ mod tests {
         let pairs = Pairs { ordered: vec![[0, 1]; 50], similar: vec![[1, 2]; 7] };
         let thin = thinned(pairs, 10, 1);
         assert_eq!((thin.ordered.len(), thin.similar.len()), (10, 7));
-    }
-
-    #[test]
-    fn a_line_through_points() {
-        let (offset, slope) = line(&[(0.0, 1.0), (1.0, 3.0), (2.0, 5.0)]).unwrap();
-        assert!((offset - 1.0).abs() < 1e-12 && (slope - 2.0).abs() < 1e-12);
-        assert_eq!(line(&[(1.0, 1.0), (1.0, 3.0)]), None);
     }
 }

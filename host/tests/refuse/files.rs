@@ -81,6 +81,11 @@ pub fn make(folder: &Path) {
     };
     let head = |frames: usize| swap(&lines[..rows + frames].join("\n"), "Frames: 120", &format!("Frames: {frames}"));
 
+    text("labels.tsv", "file\tlabel\tspeed\nwalk.bvh\tfresh\t1\nweary.bvh\tweary\t1\n".into());
+    text("labels-gone.tsv", "file\tlabel\nwalk.bvh\tfresh\ngone.bvh\tweary\n".into());
+    text("labels-clip.tsv", "file\tlabel\nwalk.bvh\tfresh\nempty.bvh\tweary\n".into());
+    text("labels-nameless.tsv", "file\tlabel\n\tfresh\n".into());
+
     write("empty.bvh", b"");
     text("words.bvh", "once upon a time".into());
     write("binary.bvh", &[0x89, b'P', b'N', b'G', 0, 1, 2, 3]);
@@ -133,6 +138,8 @@ pub fn make(folder: &Path) {
     for name in ["weary.kin", "mechanics.kin"] {
         std::fs::copy(models.join(name), folder.join(name)).unwrap();
     }
+    let (moods, rig) = kinesic_host::emotion::made::sized(2, [4, 6, 3]);
+    write("moods.kin", &moods.pack(&rig, &kinesic_host::pack::Provenance::default()));
     let pack = std::fs::read(folder.join("weary.kin")).unwrap();
     let spoiled = |at: usize, byte: u8| {
         let mut bytes = pack.clone();

@@ -2,7 +2,7 @@
 #![no_std]
 #![no_main]
 
-use kinesic::{Pack, Pose, Translator, TranslatorState};
+use kinesic::{Emotion, EmotionState, Pack, Pose, Translator, TranslatorState};
 
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo) -> ! {
@@ -19,6 +19,15 @@ pub extern "C" fn main() -> i32 {
     let mut styled = Pose::identity();
     for _ in 0..100 {
         translator.step(&mut state, &Pose::identity(), &mut styled);
+    }
+    let Ok(pack) = Pack::load(kinesic::include_pack!("../../packs/v1/emotion.kin")) else { return 4 };
+    let Ok(emotion) = Emotion::<19, 4, 8>::load(&pack) else { return 5 };
+    let (mut playing, mut played) = (EmotionState::new(), Pose::<19>::identity());
+    for _ in 0..100 {
+        emotion.step(&mut playing, 1.0 / 60.0, &mut played);
+    }
+    if played.rotations.iter().any(|q| q.coords.norm_squared() < 0.99) {
+        return 6;
     }
     if styled.rotations.iter().all(|q| q.coords.norm_squared() > 0.99) { 0 } else { 3 }
 }

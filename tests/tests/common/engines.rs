@@ -6,9 +6,10 @@ use std::path::Path;
 use faer::Mat;
 use kinesic::mechanics::{BodyMechanics, FEATURES};
 use kinesic::model::{Kind, MechanicsMeta, ModelMeta};
-use kinesic::{Components, LoadError, Pack, Pipeline, PipelineState, Pose, Translator};
+use kinesic::{Components, Emotion, LoadError, Pack, Pipeline, PipelineState, Pose, Translator};
 use kinesic_host::clip::JointMap;
 use kinesic_host::components::{ComponentsModel, Factors};
+use kinesic_host::emotion::made;
 use kinesic_host::gait;
 use kinesic_host::pack::{PackFile, PackWriter, Provenance};
 use kinesic_host::rig::Rig;
@@ -19,23 +20,28 @@ use crate::robot::{JOINTS, limits};
 const UNITS: usize = 24;
 const CODE: usize = 10;
 const COUNT: usize = 8;
+const KEYS: usize = 5;
 
-pub type Device<'a> = Pipeline<'a, JOINTS, 1024, UNITS, 20, COUNT>;
-pub type State = PipelineState<JOINTS, 1024, 20, COUNT>;
+pub type Device<'a> = Pipeline<'a, JOINTS, 1024, UNITS, 20, COUNT, KEYS>;
+pub type State = PipelineState<JOINTS, 1024, 20, KEYS>;
 
-pub const ENGINES: [&str; 6] = [
+pub const ENGINES: [&str; 7] = [
     "limit alone",
     "translator, whole body",
     "translator, per joint",
     "body mechanics",
     "style components",
+    "emotion",
     "pipeline",
 ];
 
 /// A new state with half of the expression: all of it would be the source itself.
-pub fn new_state() -> State {
+pub fn new_state(engine: &str) -> State {
     let mut state = State::new();
     state.modulation.amount = 0.5;
+    // In the pipeline the source counts, and the motion that looks at no frame plays along unseen.
+    state.weights.emotion = if engine == "emotion" { 1.0 } else { 0.0 };
+    state.emotion.strength[0] = 0.5;
     state
 }
 
@@ -66,6 +72,7 @@ pub struct Packs {
     pub joint: PackFile,
     pub mechanics: PackFile,
     pub components: PackFile,
+    pub emotion: PackFile,
     pub limits: PackFile,
 }
 
@@ -78,6 +85,7 @@ impl Packs {
             joint: golden("translator-per-joint.kin"),
             mechanics: PackFile::from_bytes(&mechanics()),
             components: PackFile::from_bytes(&components()),
+            emotion: PackFile::from_bytes(&emotion()),
             limits: PackFile::from_bytes(&limits_pack()),
         }
     }
@@ -93,17 +101,19 @@ impl Packs {
         let limiter = kinesic::Limiter::load(&open(&self.limits)?)?;
         let device = Device::new(limiter);
         let (body, joint) = (open(&self.body)?, open(&self.joint)?);
-        let (mechanics, components) = (open(&self.mechanics)?, open(&self.components)?);
+        let (mechanics, components, emotion) = (open(&self.mechanics)?, open(&self.components)?, open(&self.emotion)?);
         match name {
             "limit alone" => Ok(device),
             "translator, whole body" => device.with_translator(Translator::load(&body)?),
             "translator, per joint" => device.with_translator(Translator::load(&joint)?),
             "body mechanics" => device.with_mechanics(BodyMechanics::load(&mechanics)?),
             "style components" => device.with_components(Components::load(&components)?),
+            "emotion" => device.with_emotion(Emotion::load(&emotion)?),
             _ => device
                 .with_translator(Translator::load(&body)?)?
                 .with_mechanics(BodyMechanics::load(&mechanics)?)?
-                .with_components(Components::load(&components)?),
+                .with_components(Components::load(&components)?)?
+                .with_emotion(Emotion::load(&emotion)?),
         }
     }
 }
@@ -158,6 +168,11 @@ pub fn components() -> Vec<u8> {
         reference: vec![[0.0, 0.0, 0.0, 1.0]; JOINTS],
         strength: [0.0, 1.0],
     };
+    model.pack(&rig, &Provenance::default())
+}
+
+pub fn emotion() -> Vec<u8> {
+    let (model, rig) = made::sized(1, [KEYS, COUNT, 3]);
     model.pack(&rig, &Provenance::default())
 }
 

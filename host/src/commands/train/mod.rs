@@ -1,6 +1,7 @@
 //! `kinesic train`: one file an engine.
 
 mod components;
+mod emotion;
 mod face;
 mod mechanics;
 mod report;
@@ -15,6 +16,7 @@ pub enum Engine {
     Translate(translate::Args),
     Mechanics(mechanics::Args),
     Components(components::Args),
+    Emotion(emotion::Args),
     Face(face::Args),
 }
 
@@ -24,6 +26,7 @@ pub fn run(engine: &Engine) -> miette::Result<()> {
         Engine::Translate(args) => translate::run(args),
         Engine::Mechanics(args) => mechanics::run(args),
         Engine::Components(args) => components::run(args),
+        Engine::Emotion(args) => emotion::run(args),
         Engine::Face(args) => face::run(args),
     }
 }

@@ -1,6 +1,7 @@
 //! The page that every training writes beside its pack: one file an engine, and what they share.
 
 pub mod components;
+pub mod emotion;
 pub mod face;
 pub mod mechanics;
 pub mod translate;

@@ -1,0 +1,287 @@
+//! `kinesic train emotion`.
+
+use std::path::{Path, PathBuf};
+
+use kinesic_host::clip::ReadOptions;
+use kinesic_host::emotion::evaluate::{Report, Scorer, evaluate};
+use kinesic_host::emotion::labels::{self, Attribute};
+use kinesic_host::emotion::motions::{Example, hold_out, read};
+use kinesic_host::emotion::segment::Cut;
+use kinesic_host::emotion::{TrainOptions, Trained, train};
+use kinesic_host::pack::{Metric, PackFile, Provenance};
+use kinesic_host::prepare::{Source, fingerprint};
+use kinesic_host::rig::Rig;
+use miette::{IntoDiagnostic, WrapErr, miette};
+use serde::Serialize;
+
+use super::report::{ReportArgs, emotion::page};
+use crate::commands::clips::Reading;
+use crate::commands::output::{check_output, command_line, print_json, spinner, write_whole};
+
+/// Learn how strongly motions show emotions, and how a motion looks at every strength
+///
+/// From a tab-separated table with one clip a line: its file (paths start from the table's folder), and either a label, whose
+/// order is given by --order, or a column of numbers for each --attribute. Optional columns: group (only clips of one group are
+/// compared: the action), take or subject (held out together). All clips should show one action: what is synthesised is
+/// between them. Gaits are cut into strides. Strength 1 is the strongest label's, 0 the weakest's; of numbers, the numbers'.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  kinesic train emotion --labels walks.tsv --order 'happy>normal>sad' --out walk.kin
+  kinesic train emotion --labels walks.tsv --order 'anger:angry>normal=happy=sad' --order 'happy>normal>sad' --out walk.kin
+  kinesic train emotion --labels blends.tsv --attribute angry --attribute sad --hold-out 0 --out blends.kin --json
+
+walks.tsv (tab-separated):
+  file             label   take
+  walk_angry.bvh   angry   1
+  walk_calm.bvh    normal  2
+
+Then:
+  kinesic synth walk.kin --strength 0.7 --out happier.bvh
+  kinesic score walk.kin some-walk.bvh")]
+pub struct Args {
+    /// Table of labelled clips
+    #[arg(long, value_name = "TSV")]
+    labels: PathBuf,
+    /// Labels from the strongest to the weakest, = for equally strong; NAME: in front names the attribute (default: the strongest
+    /// label). May be repeated
+    #[arg(long, value_name = "[NAME:]A>B=C>D", value_parser = Attribute::from_order)]
+    order: Vec<Attribute>,
+    /// Column of the table with numbers for strengths (may be repeated)
+    #[arg(long, value_name = "COLUMN")]
+    attribute: Vec<String>,
+    /// Pack to write
+    #[arg(long, value_name = "FILE.kin")]
+    out: PathBuf,
+    /// Name of the motion (default: the pack's file name)
+    #[arg(long, value_name = "NAME")]
+    name: Option<String>,
+    /// What a motion is: a stride of a gait, or a whole clip
+    #[arg(long, value_name = "HOW", value_enum, default_value_t = How::Auto)]
+    cut: How,
+    /// Clip whose skeleton all clips are put on (default: the first of the table)
+    #[arg(long, value_name = "CLIP")]
+    rig: Option<PathBuf>,
+    /// Keyframes of a motion
+    #[arg(long, value_name = "N", default_value_t = 13)]
+    keyframes: usize,
+    /// Principal components of a keyframe
+    #[arg(long, value_name = "N", default_value_t = 40)]
+    components: usize,
+    /// Hidden units of the network from strengths to keyframes: 3 for dozens of motions, 10 for a thousand
+    #[arg(long, value_name = "N", default_value_t = 3)]
+    hidden: usize,
+    /// Share of the takes, 0 to 0.9, that is not trained on but measured
+    #[arg(long, value_name = "SHARE", default_value_t = 0.2, value_parser = share)]
+    hold_out: f64,
+    /// Seed of all random choices
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Print the results as one JSON object
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    report: ReportArgs,
+    #[command(flatten)]
+    reading: Reading,
+}
+
+/// How clips are cut.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum How {
+    /// Strides, if nearly all clips are gaits.
+    Auto,
+    /// Strides.
+    Cycles,
+    /// Whole clips.
+    Whole,
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(share) if (0.0..=0.9).contains(&share) => Ok(share),
+        _ => Err("expected a number from 0 to 0.9".to_owned()),
+    }
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> miette::Result<()> {
+    check_output(&args.out, "kin")?;
+    args.report.check(&args.out)?;
+    let attributes = args.attributes()?;
+    let rows = labels::read(&args.labels, &attributes).into_diagnostic()?;
+    let out = hold_out(&rows, args.hold_out, args.seed);
+    let inputs = rows.iter().map(|row| row.path.as_path()).chain([args.labels.as_path()]);
+    let inputs = inputs.map(|path| fingerprint(path).into_diagnostic().wrap_err_with(|| path.display().to_string()));
+    let inputs = inputs.collect::<miette::Result<Vec<_>>>()?;
+    let reading = args.reading.options()?;
+    let bar = spinner();
+    let all = rows.len();
+    let progress = |index: usize| bar.set_message(format!("reading clip {} of {all}", index + 1));
+    let (rig, examples) = read(rows, args.rig(&reading)?, &reading, &progress).into_diagnostic()?;
+    // The table has rows, so there is a first clip.
+    let rig = rig.ok_or_else(|| miette!("{}: there is no clip", args.labels.display()))?;
+    let part = |held: bool| {
+        let chosen = examples.iter().zip(&out).filter(|(_, out)| **out == held);
+        chosen.map(|(example, _)| example.clone()).collect::<Vec<Example>>()
+    };
+    let (kept, held) = (part(false), part(true));
+    bar.set_message(format!("learning from {} clips", kept.len()));
+    let names: Vec<String> = attributes.iter().map(|attribute| attribute.name.clone()).collect();
+    let name = args.name.clone().unwrap_or_else(|| file_stem(&args.out));
+    let trained = train(&rig, &name, &names, &kept, &args.options())
+        .into_diagnostic()
+        .wrap_err_with(|| args.labels.display().to_string())?;
+
+    let mut provenance = Provenance {
+        tool: format!("kinesic {}", env!("CARGO_PKG_VERSION")),
+        command: command_line(),
+        seed: args.seed,
+        inputs,
+        notes: attributes.iter().map(Attribute::note).chain(trained.notes.iter().cloned()).collect(),
+        ..Provenance::default()
+    };
+    let preview = PackFile::from_bytes(&trained.model.pack(&rig, &provenance));
+    let pack = preview.pack().into_diagnostic()?;
+    let scorer = Scorer::load(&pack).into_diagnostic()?;
+    let training = evaluate(&scorer, &kept);
+    let unseen = (!held.is_empty()).then(|| evaluate(&scorer, &held));
+    provenance.metrics = metrics(&trained, &training, unseen.as_ref());
+    let bytes = trained.model.pack(&rig, &provenance);
+    write_whole(&args.out, &bytes)?;
+    let file = PackFile::from_bytes(&bytes);
+    args.report.write(&args.out, &file, page(&trained, &training, unseen.as_ref(), &scorer, &kept))?;
+    bar.finish_and_clear();
+    let summary = Summary {
+        pack: args.out.display().to_string(),
+        bytes: bytes.len(),
+        motion: &trained.model.motion,
+        cycle: trained.model.cycle,
+        attributes: trained
+            .model
+            .attributes
+            .iter()
+            .map(|a| Strengths { name: &a.name, strength: a.strength })
+            .collect(),
+        keyframe_error_cm: 100.0 * trained.keyframe_error,
+        network_error_cm: 100.0 * trained.network_error,
+        variance_explained: trained.explained,
+        notes: &trained.notes,
+        training: &training,
+        held_out: unseen.as_ref(),
+    };
+    if args.json {
+        return print_json(&summary);
+    }
+    print(&summary);
+    Ok(())
+}
+
+impl Args {
+    fn attributes(&self) -> miette::Result<Vec<Attribute>> {
+        let columns = self.attribute.iter().map(|name| Attribute::from_column(name));
+        let attributes: Vec<Attribute> = self.order.iter().cloned().chain(columns).collect();
+        if attributes.is_empty() {
+            return Err(miette!(
+                help = "give --order 'happy>normal>sad' for labels, or --attribute COLUMN for numbers",
+                "nothing says which motion shows more"
+            ));
+        }
+        let mut names: Vec<&str> = attributes.iter().map(|attribute| attribute.name.as_str()).collect();
+        names.sort_unstable();
+        if let Some(twice) = names.windows(2).find(|pair| pair[0] == pair[1]) {
+            return Err(miette!(
+                help = "name an order: --order 'calmness:calm>angry'",
+                "there are two attributes called {:?}",
+                twice[0]
+            ));
+        }
+        Ok(attributes)
+    }
+
+    fn rig(&self, reading: &ReadOptions) -> miette::Result<Option<Rig>> {
+        let Some(path) = &self.rig else { return Ok(None) };
+        Ok(Some(Source::read(path, reading).and_then(|source| source.rig()).into_diagnostic()?))
+    }
+
+    fn options(&self) -> TrainOptions {
+        TrainOptions {
+            keyframes: self.keyframes,
+            components: self.components,
+            hidden: self.hidden,
+            cut: match self.cut {
+                How::Auto => None,
+                How::Cycles => Some(Cut::Cycles),
+                How::Whole => Some(Cut::Whole),
+            },
+            seed: self.seed,
+        }
+    }
+}
+
+fn file_stem(path: &Path) -> String {
+    path.file_stem().map_or_else(|| "motion".to_owned(), |stem| stem.to_string_lossy().into_owned())
+}
+
+fn metrics(trained: &Trained, training: &Report, unseen: Option<&Report>) -> Vec<Metric> {
+    let metric = |name: &str, value: f64| Metric { name: name.to_owned(), value };
+    let mut metrics = vec![
+        metric("keyframe_error_cm", 100.0 * trained.keyframe_error),
+        metric("network_error_cm", 100.0 * trained.network_error),
+        metric("pair_accuracy_training", training.pair_accuracy),
+    ];
+    if let Some(unseen) = unseen {
+        metrics.push(metric("pair_accuracy_takes_held_out", unseen.pair_accuracy));
+        metrics.push(metric("spearman_takes_held_out", unseen.spearman));
+    }
+    metrics
+}
+
+#[derive(Serialize)]
+struct Summary<'a> {
+    pack: String,
+    bytes: usize,
+    motion: &'a str,
+    cycle: bool,
+    attributes: Vec<Strengths<'a>>,
+    keyframe_error_cm: f64,
+    network_error_cm: f64,
+    variance_explained: f64,
+    notes: &'a [String],
+    training: &'a Report,
+    held_out: Option<&'a Report>,
+}
+
+#[derive(Serialize)]
+struct Strengths<'a> {
+    name: &'a str,
+    strength: [f32; 2],
+}
+
+fn print(summary: &Summary) {
+    println!("                       clips    motions      pairs   in the right order   Spearman");
+    for (name, report) in
+        std::iter::once(("trained on", summary.training)).chain(summary.held_out.map(|r| ("held out", r)))
+    {
+        for attribute in &report.attributes {
+            println!(
+                "{:<18} {:>9} {:>10} {:>10} {:>18.2} % {:>10.3}",
+                format!("{name}, {}", attribute.attribute),
+                attribute.labelled,
+                report.motions,
+                attribute.pairs,
+                100.0 * attribute.pair_accuracy,
+                attribute.spearman
+            );
+        }
+    }
+    summary.notes.iter().for_each(|note| println!("note: {note}"));
+    println!(
+        "error of a joint, root mean square: {:.1} cm between keyframes, {:.1} cm from strengths to a motion",
+        summary.keyframe_error_cm, summary.network_error_cm
+    );
+    for Strengths { name, strength: [low, high] } in &summary.attributes {
+        println!("{name}: strengths from {low:.2} to {high:.2}");
+    }
+    println!("{}: {} bytes", summary.pack, summary.bytes);
+}

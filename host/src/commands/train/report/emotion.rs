@@ -1,0 +1,126 @@
+//! The report of `kinesic train emotion`.
+
+use kinesic_host::emotion::Trained;
+use kinesic_host::emotion::evaluate::{Report, Scorer, mean};
+use kinesic_host::emotion::motions::Example;
+use kinesic_host::report::{Chart, Line, Report as Page, Table};
+
+/// Strengths along a curve.
+const STEPS: usize = 41;
+
+/// The page about a training.
+pub fn page(
+    trained: &Trained,
+    training: &Report,
+    held_out: Option<&Report>,
+    scorer: &Scorer,
+    examples: &[Example],
+) -> Page {
+    let model = &trained.model;
+    let mut page = Page::new(
+        &format!("Strength of emotions in a motion: {}", model.motion),
+        "A ranking function for each emotion, and a network from strengths to keyframes (Chan, Shum, Wang, Yi, Wei, Ho 2019).",
+    );
+    page.heading("How well it ranks");
+    let rows = |name: &str, report: &Report| -> Vec<Vec<String>> {
+        let row = |a: &kinesic_host::emotion::evaluate::AttributeReport| {
+            vec![
+                format!("{name}, {}", a.attribute),
+                a.labelled.to_string(),
+                a.pairs.to_string(),
+                format!("{:.2} %", 100.0 * a.pair_accuracy),
+                format!("{:.3}", a.spearman),
+            ]
+        };
+        report.attributes.iter().map(row).collect()
+    };
+    page.table(&Table {
+        caption: "Pairs of clips with different labels, and how many of them are in that order by strength".into(),
+        head: ["", "clips", "pairs", "right", "Spearman"].map(Into::into).to_vec(),
+        rows: rows("trained on", training)
+            .into_iter()
+            .chain(held_out.into_iter().flat_map(|r| rows("held out", r)))
+            .collect(),
+    });
+    page.table(&Table {
+        caption: "Ranking functions: pairs of motions, cost of a violated pair, pair accuracy on takes held back while it was \
+                  chosen"
+            .into(),
+        head: ["attribute", "ordered", "similar", "cost", "validation"].map(Into::into).to_vec(),
+        rows: (model.attributes.iter().zip(&trained.rankings))
+            .map(|(attribute, r)| {
+                let validation = if r.validation.is_nan() { "-".into() } else { format!("{:.2} %", 100.0 * r.validation) };
+                vec![
+                    attribute.name.clone(),
+                    r.ordered.to_string(),
+                    r.similar.to_string(),
+                    format!("{:.2e}", r.cost),
+                    validation,
+                ]
+            })
+            .collect(),
+    });
+    for (index, attribute) in model.attributes.iter().enumerate() {
+        let points = examples.iter().filter_map(|example| {
+            Some((example.levels.get(index).copied()??, *mean(&scorer.read(&example.clip)).get(index)?))
+        });
+        let mut points: Vec<(f64, f64)> = points.collect();
+        points.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
+        page.chart(&Chart {
+            caption: format!("{}: strength that is read from every training clip, by its label.", attribute.name),
+            x: "label",
+            y: "strength",
+            lines: vec![Line { name: attribute.name.clone(), points }],
+        });
+    }
+    page.heading("What it makes").text(&format!(
+        "{} keyframes of {} components, which hold {:.1} % of the variance; a joint is {:.1} cm from the spline between keyframes, and \
+         {:.1} cm from the training motions at the strengths that these have (root mean square).",
+        model.keyframes,
+        model.components(),
+        100.0 * trained.explained,
+        100.0 * trained.keyframe_error,
+        100.0 * trained.network_error,
+    ));
+    page.chart(&Chart {
+        caption: "How long the motion takes at each strength, the other strengths in the middle of their range.".into(),
+        x: "strength",
+        y: "seconds",
+        lines: durations(trained),
+    });
+    for note in &trained.notes {
+        page.text(&format!("Note: {note}."));
+    }
+    page
+}
+
+/// Time from the first keyframe to the last, from the network's positions and velocities.
+fn durations(trained: &Trained) -> Vec<Line> {
+    let model = &trained.model;
+    let projection = model.projection();
+    let width = model.mean.len();
+    let seconds = |strengths: &[f64]| {
+        let keys = projection.features(&model.network.apply(strengths));
+        let keys: Vec<&[f64]> = keys.chunks_exact(width).collect();
+        let piece = |pair: &[&[f64]]| {
+            let way: f64 = (0..width / 2).map(|c| (pair[1][c] - pair[0][c]).powi(2)).sum();
+            let speed: f64 = pair[1][width / 2..].iter().map(|v| v * v).sum();
+            (way / speed.max(1e-12)).sqrt().clamp(f64::from(model.duration[0]), f64::from(model.duration[1]))
+        };
+        keys.windows(2).map(piece).sum::<f64>()
+    };
+    let line = |(index, attribute): (usize, &kinesic_host::emotion::Attribute)| {
+        let point = |step: usize| {
+            let part = step as f64 / (STEPS - 1) as f64;
+            let at = |other: usize, [low, high]: [f32; 2]| {
+                let part = if other == index { part } else { 0.5 };
+                f64::from(low) + part * f64::from(high - low)
+            };
+            let strengths: Vec<f64> =
+                model.attributes.iter().enumerate().map(|(other, attribute)| at(other, attribute.strength)).collect();
+            (strengths[index], seconds(&strengths))
+        };
+        Line { name: attribute.name.clone(), points: (0..STEPS).map(point).collect() }
+    };
+    model.attributes.iter().enumerate().map(line).collect()
+}

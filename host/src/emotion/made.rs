@@ -1,0 +1,160 @@
+//! A made emotion model, where no recorded motions may be: tests and the firmware workloads.
+
+use std::f64::consts::TAU;
+
+use kinesic::Pose;
+use kinesic::pose::{Heading, World, forward};
+use nalgebra::{UnitQuaternion, Vector3};
+
+use super::model::{Attribute, EmotionModel};
+use super::regress::Regression;
+use crate::clip::JointMap;
+use crate::gait::{Manner, skeleton, walk};
+use crate::rig::{MAX_JOINTS, Rig};
+
+/// Keyframes, the paper's.
+pub const KEYS: usize = 13;
+/// Components of a keyframe, the paper's.
+pub const COMPONENTS: usize = 40;
+/// Hidden units, the paper's.
+pub const UNITS: usize = 10;
+/// Frames a second of the made walks, so that a keyframe is near a frame.
+const FPS: f64 = 480.0;
+
+/// Keyframes, components of a keyframe and hidden units.
+pub type Size = [usize; 3];
+
+/// [`sized`] as the paper has it.
+pub fn model(attributes: usize) -> (EmotionModel, Rig) {
+    sized(attributes, [KEYS, COMPONENTS, UNITS])
+}
+
+/// A cycle of the made gait with one or two attributes: weary from 0 to 1, swaying from -1 to 1. The
+/// keyframes are those of made walks, the network joins them; nothing is trained.
+pub fn sized(attributes: usize, [keys, components, units]: Size) -> (EmotionModel, Rig) {
+    let skeleton = skeleton();
+    let map = JointMap::detect(&skeleton).unwrap_or_else(|| unreachable!("the gait's joints have known names"));
+    let rig = Rig::new(&skeleton, &map).unwrap_or_else(|error| unreachable!("the gait is a rig: {error}"));
+    let swaying = Manner { sway: 0.3, arms: 0.9, ..Manner::NEUTRAL };
+    let manners: Vec<Manner> = [Manner::NEUTRAL, Manner::WEARY, swaying].into_iter().take(attributes + 1).collect();
+    let cycles: Vec<Cycle> = manners.iter().map(|manner| Cycle::new(&rig, manner, keys)).collect();
+    let features: Vec<&[f64]> = cycles.iter().flat_map(|cycle| cycle.keyframes.iter().map(Vec::as_slice)).collect();
+    let width = 6 * rig.joints();
+    let mean: Vec<f64> =
+        (0..width).map(|c| features.iter().map(|row| row[c]).sum::<f64>() / features.len() as f64).collect();
+    let directions = directions(&features, &mean, components);
+    let coordinates = |cycle: &Cycle| -> Vec<f64> {
+        let row = |row: &Vec<f64>| directions.iter().map(|d| dot_from(row, &mean, d)).collect::<Vec<f64>>();
+        cycle.keyframes.iter().flat_map(row).collect()
+    };
+    let neutral = coordinates(&cycles[0]);
+    let changes: Vec<Vec<f64>> = cycles[1..]
+        .iter()
+        .map(|cycle| coordinates(cycle).iter().zip(&neutral).map(|(to, from)| to - from).collect())
+        .collect();
+    let motion = neutral.len();
+    // Along a change the score rises by one: the part of it that the other change does not share is not needed here.
+    let rank: Vec<f64> = changes
+        .iter()
+        .flat_map(|change| {
+            let square: f64 = change.iter().map(|x| x * x).sum();
+            change.iter().map(move |x| x / square).collect::<Vec<_>>()
+        })
+        .collect();
+    let rank_bias = rank.chunks_exact(motion).map(|w| -w.iter().zip(&neutral).map(|(w, x)| w * x).sum::<f64>());
+    let wave = |at: usize| (at as f64 * 0.7 + 0.3).sin();
+    let model = EmotionModel {
+        motion: "made walk".to_owned(),
+        frame_rate: 60.0,
+        attributes: [("weary", [0.0, 1.0]), ("swaying", [-1.0, 1.0])]
+            .into_iter()
+            .take(attributes)
+            .map(|(name, strength)| Attribute { name: name.to_owned(), strength })
+            .collect(),
+        keyframes: keys,
+        cycle: true,
+        duration: [0.02, 0.5],
+        network: Regression {
+            inputs: attributes,
+            hidden: (0..units * attributes).map(|at| 2.0 * wave(at)).collect(),
+            hidden_bias: (0..units).map(|at| wave(3 * at + 1)).collect(),
+            output: (0..motion * units).map(|at| 2e-3 * wave(at)).collect(),
+            linear: (0..motion).flat_map(|at| changes.iter().map(move |change| change[at])).collect(),
+            bias: neutral.clone(),
+        },
+        basis: (0..width).flat_map(|c| directions.iter().map(move |d| d[c])).collect(),
+        mean,
+        rank_bias: rank_bias.collect(),
+        rank,
+        reference: cycles[0].reference.clone(),
+        parts: (0..KEYS).map(|key| key as f64 / (KEYS - 1) as f64).collect(),
+        velocity_scale: 1.0,
+    };
+    (model, rig)
+}
+
+/// Keyframes of one cycle.
+struct Cycle {
+    /// Positions, then velocities since the keyframe before.
+    keyframes: Vec<Vec<f64>>,
+    reference: Vec<[f32; 4]>,
+}
+
+impl Cycle {
+    fn new(rig: &Rig, manner: &Manner, count: usize) -> Self {
+        let seconds = 1.0 / manner.cadence;
+        let poses = rig.poses(&walk(manner, seconds + 0.1, FPS, 0.0, 1));
+        let frame = |key: usize| (seconds * FPS * key as f64 / (count - 1) as f64).round() as usize;
+        let keys: Vec<Pose<MAX_JOINTS>> = (0..count).map(|key| poses[frame(key)]).collect();
+        let positions: Vec<Vec<f64>> = keys.iter().map(|pose| positions(rig, pose)).collect();
+        let keyframes = (0..count).map(|key| {
+            let at = key.max(1);
+            let time = (frame(at) - frame(at - 1)) as f64 / FPS;
+            let rates = positions[at].iter().zip(&positions[at - 1]).map(|(to, from)| (to - from) / time);
+            positions[key].iter().copied().chain(rates).collect()
+        });
+        let mut reference: Vec<UnitQuaternion<f32>> = Vec::new();
+        for pose in &keys {
+            let mut world = World::<MAX_JOINTS>::identity();
+            forward(&rig.device(), pose, &mut world);
+            let heading = Heading::default().follow(&rig.device(), &world);
+            reference.push(heading.rotation().inverse() * pose.rotations[0]);
+            reference.extend(&pose.rotations[1..rig.joints()]);
+        }
+        Self { keyframes: keyframes.collect(), reference: reference.iter().map(|q| q.coords.into()).collect() }
+    }
+}
+
+fn positions(rig: &Rig, pose: &Pose<MAX_JOINTS>) -> Vec<f64> {
+    let mut world = World::identity();
+    forward(&rig.device(), pose, &mut world);
+    world.positions[..rig.joints()].iter().flat_map(|p: &Vector3<f32>| p.iter().map(|x| f64::from(*x))).collect()
+}
+
+/// Directions at right angles that span the features, by Gram and Schmidt; seeded ones where these are used up.
+fn directions(features: &[&[f64]], mean: &[f64], count: usize) -> Vec<Vec<f64>> {
+    let mut directions: Vec<Vec<f64>> = Vec::new();
+    let centred = features.iter().map(|row| row.iter().zip(mean).map(|(x, m)| x - m).collect::<Vec<f64>>());
+    let seeded = (0..).map(|n| (0..mean.len()).map(|c| (TAU * 0.618 * (n * c + n + c) as f64).sin()).collect());
+    for mut row in centred.chain(seeded) {
+        if directions.len() == count {
+            break;
+        }
+        // Twice is enough for right angles to rounding.
+        for _ in 0..2 {
+            for d in &directions {
+                let along: f64 = row.iter().zip(d).map(|(x, d)| x * d).sum();
+                row.iter_mut().zip(d).for_each(|(x, d)| *x -= along * d);
+            }
+        }
+        let norm = row.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if norm > 1e-3 {
+            directions.push(row.iter().map(|x| x / norm).collect());
+        }
+    }
+    directions
+}
+
+fn dot_from(row: &[f64], mean: &[f64], direction: &[f64]) -> f64 {
+    row.iter().zip(mean).zip(direction).map(|((x, m), d)| (x - m) * d).sum()
+}

@@ -1,0 +1,281 @@
+//! Playback of an emotion model: laws of the device's code, on the made walk.
+
+use kinesic::emotion::{EmotionState, FADE, Place};
+use kinesic::pose::{World, forward};
+use kinesic::{Emotion, Pose};
+use kinesic_host::emotion::made::{self, COMPONENTS, KEYS};
+use kinesic_host::pack::{PackFile, Provenance};
+use nalgebra::Vector3;
+use proptest::prelude::*;
+
+const JOINTS: usize = 19;
+type Device<'a> = Emotion<'a, JOINTS, KEYS, COMPONENTS>;
+type State = EmotionState<JOINTS, KEYS>;
+
+fn file(attributes: usize) -> PackFile {
+    let (model, rig) = made::model(attributes);
+    PackFile::from_bytes(&model.pack(&rig, &Provenance::default()))
+}
+
+/// The made walk as a gesture: it ends.
+fn gesture() -> PackFile {
+    let (mut model, rig) = made::model(1);
+    model.cycle = false;
+    PackFile::from_bytes(&model.pack(&rig, &Provenance::default()))
+}
+
+fn started(strength: [f32; 4]) -> State {
+    let mut state = State::new();
+    state.strength = strength;
+    state
+}
+
+fn step(device: &Device, state: &mut State, dt: f32) -> Pose<JOINTS> {
+    let mut pose = Pose::identity();
+    device.step(state, dt, &mut pose);
+    pose
+}
+
+fn positions(device: &Device, pose: &Pose<JOINTS>) -> [Vector3<f32>; JOINTS] {
+    let mut world = World::identity();
+    forward(device.skeleton(), pose, &mut world);
+    world.positions
+}
+
+/// Largest distance of a joint.
+fn apart(device: &Device, a: &Pose<JOINTS>, b: &Pose<JOINTS>) -> f32 {
+    let (a, b) = (positions(device, a), positions(device, b));
+    a.iter().zip(b).map(|(a, b)| (a - b).norm()).fold(0.0, f32::max)
+}
+
+#[test]
+fn thirty_sixty_and_hundred_and_twenty_frames_agree_at_common_times() {
+    let (file, gesture) = (file(2), gesture());
+    for file in [&file, &gesture] {
+        let pack = file.pack().unwrap();
+        let device = Device::load(&pack).unwrap();
+        let run = |rate: usize| {
+            let mut state = started([0.2, 0.5, 0.0, 0.0]);
+            let mut poses = Vec::new();
+            for frame in 0..=10 * rate {
+                // A change of strength at the same times.
+                if frame == 2 * rate || frame == 3 * rate {
+                    state.strength[0] = frame as f32 / rate as f32 - 2.0;
+                }
+                let pose = step(&device, &mut state, 1.0 / rate as f32);
+                if frame % (rate / 30) == 0 {
+                    poses.push(pose);
+                }
+            }
+            poses
+        };
+        let slow = run(30);
+        for fast in [run(60), run(120), run(90)] {
+            let worst = slow.iter().zip(&fast).map(|(a, b)| apart(&device, a, b)).fold(0.0, f32::max);
+            assert!(worst < 2e-4, "{worst} m");
+        }
+    }
+}
+
+/// Speeds of the joints right now, m/s, by two steps of a millisecond from a copy of the state.
+fn rates(device: &Device, state: &State) -> [Vector3<f32>; JOINTS] {
+    let mut state = *state;
+    let [a, b] = [(); 2].map(|()| positions(device, &step(device, &mut state, 1e-3)));
+    std::array::from_fn(|joint| (b[joint] - a[joint]) * 1e3)
+}
+
+#[test]
+fn a_change_of_strength_moves_nothing_and_alters_no_speed() {
+    let (file, gesture) = (file(2), gesture());
+    for file in [&file, &gesture] {
+        let pack = file.pack().unwrap();
+        let device = Device::load(&pack).unwrap();
+        let mut state = started([0.0; 4]);
+        let (mut moved, mut faster, mut kept) = (0f32, 0f32, 0f32);
+        for at in 0..200 {
+            step(&device, &mut state, 0.017);
+            let (before, speed) = (step(&device, &mut state, 0.0), rates(&device, &state));
+            let playing = state.playing();
+            state.strength = [((at + 1) % 3) as f32 * 0.5, 1.0 - (at % 5) as f32 * 0.5, 0.0, 0.0];
+            device.change(&mut state);
+            assert_ne!(state.playing(), playing);
+            let (after, speed_after) = (step(&device, &mut state, 0.0), rates(&device, &state));
+            moved = moved.max(apart(&device, &before, &after));
+            faster = speed.iter().zip(speed_after).map(|(a, b)| (a - b).norm()).fold(faster, f32::max);
+            kept = speed.iter().map(|v| v.norm()).fold(kept, f32::max);
+        }
+        assert!(moved < 2e-5, "{moved} m");
+        // Speeds are differences over a millisecond: single precision and accelerations show in them.
+        assert!(faster < 0.15 && kept > 1.0, "{faster} m/s of {kept} m/s");
+    }
+}
+
+#[test]
+fn a_sweep_has_no_step_in_position_or_velocity() {
+    let file = file(1);
+    let pack = file.pack().unwrap();
+    let device = Device::load(&pack).unwrap();
+    let rate = 240.0;
+    // Largest speed and acceleration of any joint over ten seconds.
+    let extremes = |sweep: &dyn Fn(f32) -> f32| {
+        let mut state = started([sweep(0.0), 0.0, 0.0, 0.0]);
+        let mut last: Vec<[Vector3<f32>; JOINTS]> = Vec::new();
+        let mut most = [0f32; 2];
+        for frame in 0..2400 {
+            state.strength[0] = sweep(frame as f32 / rate);
+            let now = positions(&device, &step(&device, &mut state, 1.0 / rate));
+            if let [.., before, middle] = &last[..] {
+                for joint in 0..JOINTS {
+                    let (a, b) = (middle[joint] - before[joint], now[joint] - middle[joint]);
+                    most = [most[0].max(b.norm() * rate), most[1].max((b - a).norm() * rate * rate)];
+                }
+            }
+            last.push(now);
+        }
+        most
+    };
+    let still = [extremes(&|_| 0.0), extremes(&|_| 1.0)];
+    let [speed, acceleration] = [0, 1].map(|k| still[0][k].max(still[1][k]));
+    // There and back within two seconds, and a leap every half second.
+    let swept = extremes(&|t| 0.5 - 0.5 * (3.0 * t).cos());
+    let leaping = extremes(&|t| if (2.0 * t) as i32 % 2 == 0 { 0.0 } else { 1.0 });
+    println!("speed m/s, acceleration m/s^2: steady {speed} {acceleration}, swept {swept:?}, leaping {leaping:?}");
+    assert!(swept[0] < 1.2 * speed && swept[1] < 1.5 * acceleration, "{swept:?} {speed} {acceleration}");
+    // A leap: 6 |offset| / FADE^2 + 4 |rate| / FADE more, with the offsets and rates of the two walks, under 0.4 m and 2 m/s.
+    let bound = acceleration + 6.0 * 0.4 / (FADE * FADE) + 4.0 * 2.0 / FADE;
+    assert!(leaping[1] < bound, "{leaping:?} {bound}");
+}
+
+#[test]
+fn a_cycle_goes_on_where_it_ended() {
+    let file = file(1);
+    let pack = file.pack().unwrap();
+    let device = Device::load(&pack).unwrap();
+    let mut state = started([0.0; 4]);
+    let first = step(&device, &mut state, 0.0);
+    let round = state.seconds();
+    let mut last = first;
+    let mut travels = Vec::new();
+    for _ in 0..5 {
+        // The whole round is the longest step there is.
+        let pose = step(&device, &mut state, round);
+        let next = step(&device, &mut state, 0.0);
+        travels.push((next.root - pose.root).norm());
+        for (a, b) in next.rotations.iter().zip(&first.rotations).skip(1) {
+            assert!((a.coords - b.coords).norm() < 1e-3, "a round later the posture is the same");
+        }
+        last = next;
+    }
+    assert!(travels.iter().all(|t| (t / travels[0] - 1.0).abs() < 1e-3 && *t > 0.5), "{travels:?}");
+    assert!((last.root.y - first.root.y).abs() < 1e-4);
+    // Ten minutes on.
+    for _ in 0..36_000 {
+        last = step(&device, &mut state, 1.0 / 60.0);
+    }
+    assert!(last.is_sound(JOINTS) && (0.5..1.2).contains(&last.root.y), "{}", last.root);
+    // Brought back to the origin, the same pose goes on.
+    let before = step(&device, &mut state, 0.0);
+    state.put(Place::default());
+    let after = step(&device, &mut state, 0.0);
+    assert!(after.root.xz().norm() < 3.0);
+    for (a, b) in before.rotations.iter().zip(&after.rotations).skip(1) {
+        assert!((a.coords - b.coords).norm() < 1e-2);
+    }
+}
+
+#[test]
+fn a_walk_keeps_its_direction_through_changes() {
+    let file = file(2);
+    let pack = file.pack().unwrap();
+    let device = Device::load(&pack).unwrap();
+    let mut state = started([0.0; 4]);
+    // Direction of the way of the next round, rad.
+    let course = |state: &State| {
+        let mut state = *state;
+        let round = state.seconds();
+        let start = step(&device, &mut state, round).root;
+        let way = step(&device, &mut state, 0.0).root - start;
+        way.x.atan2(way.z)
+    };
+    let (mut most, mut sum) = (0f32, 0f32);
+    for change in 0..80 {
+        // There and back at ever other phases.
+        (0..37 + change).for_each(|_| drop(step(&device, &mut state, 0.011)));
+        let before = course(&state);
+        state.strength[0] = if change % 2 == 0 { 1.0 } else { 0.0 };
+        device.change(&mut state);
+        let (sin, cos) = (course(&state) - before).sin_cos();
+        let turn = sin.atan2(cos);
+        (most, sum) = (most.max(turn.abs()), sum + turn);
+    }
+    println!("a change turns the way of the next round by at most {most:.3} rad, 80 changes by {sum:.3} rad");
+    // A round of the slower walk turns by more: half of that to either side.
+    assert!(most < 0.08 && sum.abs() < 0.3, "{most} {sum}");
+}
+
+#[test]
+fn a_gesture_ends_stands_and_starts_again() {
+    let file = gesture();
+    let pack = file.pack().unwrap();
+    let device = Device::load(&pack).unwrap();
+    let mut state = started([0.0; 4]);
+    step(&device, &mut state, 0.0);
+    let round = state.seconds();
+    for _ in 0..60 {
+        step(&device, &mut state, round / 50.0);
+    }
+    assert!(state.has_ended());
+    for _ in 0..20 {
+        step(&device, &mut state, 0.1);
+    }
+    let (a, b) = (step(&device, &mut state, 0.1), step(&device, &mut state, 0.1));
+    assert_eq!(a, b, "it stands");
+    device.restart(&mut state);
+    assert!(!state.has_ended());
+    let c = step(&device, &mut state, 0.5 * round);
+    assert!(apart(&device, &a, &c) < 2e-5, "a restart moves nothing");
+    assert!(apart(&device, &a, &step(&device, &mut state, 0.0)) > 0.1, "it plays again");
+}
+
+#[test]
+fn strengths_outside_the_range_or_nan_are_held() {
+    let file = file(2);
+    let pack = file.pack().unwrap();
+    let device = Device::load(&pack).unwrap();
+    let mut state = started([7.0, -7.0, f32::NAN, 3.0]);
+    let far = step(&device, &mut state, 0.0);
+    assert_eq!(state.playing(), Some([1.0, -1.0, 0.0, 0.0]));
+    assert_eq!(far, step(&device, &mut started([1.0, -1.0, 0.0, 0.0]), 0.0));
+    state.strength = [f32::NAN, f32::NEG_INFINITY, 0.0, 0.0];
+    assert_eq!(far, step(&device, &mut state, 0.0), "what is no number changes nothing");
+    assert_eq!(state.playing(), Some([1.0, -1.0, 0.0, 0.0]));
+    for dt in [f32::NAN, f32::INFINITY, -1.0, f32::NEG_INFINITY] {
+        assert_eq!(far, step(&device, &mut state, dt), "no time passes");
+    }
+    step(&device, &mut state, 1e30);
+    assert!(step(&device, &mut state, 0.0).is_sound(JOINTS), "at most a round passes");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// Whatever is asked for at whatever times: bones keep their length, rotations stay rotations, nothing leaps.
+    #[test]
+    fn any_sequence_of_strengths_and_steps_is_a_motion(
+        asked in proptest::collection::vec((-2.0f32..2.0, -2.0f32..2.0, 0.0f32..0.05), 1..200),
+    ) {
+        let file = file(2);
+        let pack = file.pack().unwrap();
+        let device = Device::load(&pack).unwrap();
+        let mut state = started([0.0; 4]);
+        let mut last = step(&device, &mut state, 0.0);
+        for (weary, swaying, dt) in asked {
+            state.strength = [weary, swaying, 0.0, 0.0];
+            let pose = step(&device, &mut state, dt);
+            prop_assert!(pose.is_sound(JOINTS));
+            prop_assert!(apart(&device, &last, &pose) < 1e-4, "a change moves by {}", apart(&device, &last, &pose));
+            last = step(&device, &mut state, 0.0);
+            prop_assert!(apart(&device, &last, &pose) <= 12.0 * dt + 1e-4, "{} m in {dt} s", apart(&device, &last, &pose));
+        }
+    }
+}
