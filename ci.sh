@@ -126,10 +126,12 @@ deny() {
         exit 1
     fi
     local manifest
-    for manifest in Cargo.toml c/Cargo.toml docs/board/Cargo.toml firmware-sim/image/Cargo.toml fuzz/Cargo.toml; do
-        # Advisories need the database of RustSec, which is fetched from the network.
-        cargo deny --manifest-path "$manifest" check --config "$PWD/deny.toml" licenses sources bans
+    for manifest in Cargo.toml {c,docs/board,firmware-sim/image,firmware-sim/plugin,fuzz,tests/no-std-link,wasm}/Cargo.toml; do
+        echo "$manifest"
+        cargo deny --locked --manifest-path "$manifest" --config "$PWD/deny.toml" check \
+            --allow license-not-encountered --allow license-exception-not-encountered licenses sources bans
     done
+    # Advisories need the database of RustSec, which is fetched from the network.
     cargo deny check advisories
 }
 
