@@ -1,8 +1,8 @@
 //! Every engine, 100 frames. A new engine gets a function and a line in [`step_all`].
 
 use kinesic::face::{FaceState, FaceSynth, POINTS};
-use kinesic::mechanics::{Blend, Decoupled, Modulation, Window, mix, modulate};
 use kinesic::limit::{LimitState, Limiter};
+use kinesic::mechanics::{Blend, Decoupled, Modulation, Window, mix, modulate};
 use kinesic::{BodyMechanics, Components, ComponentsState, MechanicsState, Pack, Pose, Translator, TranslatorState};
 
 use super::frames::{Frames, JOINTS};

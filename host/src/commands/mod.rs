@@ -14,6 +14,7 @@ mod export;
 mod expression;
 mod face;
 mod inspect;
+mod limits;
 mod mask;
 mod mix;
 mod modulate;
@@ -57,6 +58,7 @@ enum Command {
     Blend(blend::Args),
     View(view::Args),
     Quantize(quantize::Args),
+    Limits(limits::Args),
     Export(export::Args),
     Completions(completions::Args),
     Face(face::Args),
@@ -76,6 +78,7 @@ pub fn run(cli: Cli) -> miette::Result<()> {
         Command::Blend(args) => blend::run(&args),
         Command::View(args) => view::run(&args),
         Command::Quantize(args) => quantize::run(&args),
+        Command::Limits(args) => limits::run(&args),
         Command::Export(args) => export::run(&args),
         Command::Completions(args) => completions::run(&args),
         Command::Face(args) => face::run(&args),
