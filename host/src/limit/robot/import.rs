@@ -72,9 +72,12 @@ pub fn import(
     }
     // A free joint without rates of its own is as fast as the fastest servo.
     let fastest = limits.iter().filter_map(|(limit, _)| Some(limit.as_ref()?.velocity[0])).fold(0.0, f32::max);
-    let rate = velocity.map_or(fastest, below);
+    let rate = velocity.map_or(fastest, |x| x as f32);
     let change = |own: Option<&Vec<f64>>| {
-        own.map(|own| own[0]).or(acceleration).map(below).ok_or_else(|| no_acceleration("joints without an entry"))
+        own.map(|own| own[0])
+            .or(acceleration)
+            .map(|x| x as f32)
+            .ok_or_else(|| no_acceleration("joints without an entry"))
     };
     let joints_of = |joint: usize| joints[joint].iter().map(|at| robot.joints[*at].name.clone()).collect::<Vec<_>>();
     let mut rows = Vec::new();
@@ -88,7 +91,7 @@ pub fn import(
             None => {
                 let own = entry.and_then(|entry| entry.velocity.as_ref());
                 JointLimit::free(
-                    own.map_or(rate, |own| below(own[0])),
+                    own.map_or(rate, |own| own[0] as f32),
                     change(entry.and_then(|e| e.acceleration.as_ref()))?,
                 )
             }
@@ -345,11 +348,17 @@ fn limit(
     let limit = JointLimit {
         kind,
         axes: std::array::from_fn(axis),
-        velocity: three(&|row| below(row.velocity)),
-        acceleration: three(&|row| below(row.acceleration)),
+        velocity: three(&|row| row.velocity as f32),
+        acceleration: three(&|row| row.acceleration as f32),
         ..JointLimit::free(1.0, 1.0)
     };
-    let (lower, upper) = (three(&|row| -below(-row.lower)), three(&|row| below(row.upper)));
+    let (lower, mut upper) = (three(&|row| row.lower as f32), three(&|row| row.upper as f32));
+    // A whole turn must not become more by rounding.
+    for (upper, lower) in upper.iter_mut().zip(lower) {
+        while *upper - lower > std::f32::consts::TAU {
+            *upper = upper.next_down();
+        }
+    }
     let mut limit = limit.within(lower, upper);
     for (rest, index) in limit.rest.iter_mut().zip(0..) {
         if let Some(given) = row(index).rest {
@@ -357,12 +366,6 @@ fn limit(
         }
     }
     Ok(limit)
-}
-
-/// The single that is nearest from below: a bound is never loosened by rounding.
-fn below(x: f64) -> f32 {
-    let single = x as f32;
-    if f64::from(single) > x { single.next_down() } else { single }
 }
 
 /// The device's refusal, with the joint's name.
