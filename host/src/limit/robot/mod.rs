@@ -5,7 +5,7 @@
 //! | `urdf` | [`Robot`]: the joints of a URDF, as a tree |
 //! | `map` | [`RobotMap`]: robot joints of each skeleton joint, and what a URDF does not say |
 //! | `stand` | how the skeleton stands when all of the robot's angles are zero |
-//! | `import` | both together: [`import`] |
+//! | `import` | both together: [`import()`] |
 //!
 //! # The geometry
 //!
