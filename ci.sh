@@ -101,7 +101,7 @@ fuzz() {
         cargo build --release --locked --manifest-path fuzz/Cargo.toml --target "$host"
     mkdir -p fuzz/artifacts fuzz/target/corpus
     log=$(mktemp)
-    for target in pack bvh csv map; do
+    for target in pack bvh csv map urdf; do
         # What is new goes to fuzz/target, so that later runs go on from there and the repository stays small.
         mkdir -p "fuzz/target/corpus/$target" "fuzz/artifacts/$target" "fuzz/regressions/$target"
         if "fuzz/target/$host/release/$target" -max_total_time="$seconds" -timeout=20 -rss_limit_mb=4096 -print_final_stats=1 \
@@ -125,10 +125,12 @@ deny() {
         exit 1
     fi
     local manifest
-    for manifest in Cargo.toml c/Cargo.toml docs/board/Cargo.toml firmware-sim/image/Cargo.toml fuzz/Cargo.toml; do
-        # Advisories need the database of RustSec, which is fetched from the network.
-        cargo deny --manifest-path "$manifest" check --config "$PWD/deny.toml" licenses sources bans
+    for manifest in Cargo.toml {c,docs/board,firmware-sim/image,firmware-sim/plugin,fuzz,tests/no-std-link,wasm}/Cargo.toml; do
+        echo "$manifest"
+        cargo deny --locked --manifest-path "$manifest" --config "$PWD/deny.toml" check \
+            --allow license-not-encountered --allow license-exception-not-encountered licenses sources bans
     done
+    # Advisories need the database of RustSec, which is fetched from the network.
     cargo deny check advisories
 }
 

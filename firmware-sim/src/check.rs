@@ -220,7 +220,7 @@ impl Bench<'_> {
         let timing = data::find(&self.data.timings, &target.timing, "cycles.toml")?;
         let limits = data::find(&self.data.budgets.limits, workload, "[limits] of budgets.toml")?;
         let limit = data::find(limits, name, "[limits] of this workload in budgets.toml")?.clone();
-        let run = emulator::run(target, image, &self.plugin, &prepared.input, &self.folders.run(name, workload))?;
+        let run = emulator::run(target, image, Some(&self.plugin), &prepared.input, &self.folders.run(name, workload))?;
         let unpriced = |source| CheckError::Price { target: name.to_owned(), workload: workload.to_owned(), source };
         let cycles = timing.price(target.isa, &run.profile.instructions, |one| one.longest).map_err(unpriced)?;
         let gated_cycles = timing.gated(cycles);

@@ -11,6 +11,8 @@ use crate::profile::{Profile, ProfileError};
 
 /// Longer than any run takes; a hung image ends here.
 const TIME_LIMIT: Duration = Duration::from_secs(300);
+/// The same for a run that is not counted: a soak.
+const SOAK_LIMIT: Duration = Duration::from_secs(3600);
 
 /// What a run of an image gave.
 #[derive(Clone, Debug)]
@@ -61,15 +63,24 @@ pub enum RunError {
         command: String,
     },
     /// The image did not end.
-    #[error("the image {} ran for more than {} s and was ended", image.display(), TIME_LIMIT.as_secs())]
+    #[error("the image {} ran for more than {} s and was ended", image.display(), limit.as_secs())]
     Hung {
         /// The image.
         image: PathBuf,
+        /// The time that it had.
+        limit: Duration,
     },
 }
 
-/// Runs `image` on `target` over `input` (a block of frames). All files stay in `folder`.
-pub fn run(target: &Target, image: &Image, plugin: &Path, input: &[u8], folder: &Path) -> Result<Run, RunError> {
+/// Runs `image` on `target` over `input` (a block of frames). All files stay in `folder`. Without the plugin nothing is counted, and
+/// the profile is empty: several times as fast.
+pub fn run(
+    target: &Target,
+    image: &Image,
+    plugin: Option<&Path>,
+    input: &[u8],
+    folder: &Path,
+) -> Result<Run, RunError> {
     let file = |name: &str| folder.join(name);
     write(&file("frames.bin"), input)?;
     for stale in ["report.txt", "counts.txt"] {
@@ -88,21 +99,23 @@ pub fn run(target: &Target, image: &Image, plugin: &Path, input: &[u8], folder: 
         .arg("-chardev")
         .arg(format!("file,id=report,path={}", file("report.txt").display()))
         .args(["-semihosting-config", "enable=on,target=native,chardev=report"])
-        .arg("-plugin")
-        .arg(format!(
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped());
+    if let Some(plugin) = plugin {
+        qemu.arg("-plugin").arg(format!(
             "{},out={},begin={begin:x},end={end:x},code={}",
             plugin.display(),
             file("counts.txt").display(),
             target.isa.code()
-        ))
-        .stdin(Stdio::null())
-        .stdout(Stdio::null())
-        .stderr(Stdio::piped());
+        ));
+    }
     if target.machine == "virt" {
         qemu.args(["-bios", "none"]);
     }
     let command = format!("{qemu:?}");
-    let (success, words) = wait(qemu, target, image)?;
+    let limit = if plugin.is_some() { TIME_LIMIT } else { SOAK_LIMIT };
+    let (success, words) = wait(qemu, target, image, limit)?;
     let report = std::fs::read_to_string(file("report.txt")).unwrap_or_default();
     let stopped = || RunError::Stopped {
         image: image.path.clone(),
@@ -110,11 +123,13 @@ pub fn run(target: &Target, image: &Image, plugin: &Path, input: &[u8], folder: 
         command: command.clone(),
     };
     let mut run = parse(&report).filter(|_| success).ok_or_else(stopped)?;
-    run.profile = Profile::read(&file("counts.txt"))?;
+    if plugin.is_some() {
+        run.profile = Profile::read(&file("counts.txt"))?;
+    }
     Ok(run)
 }
 
-fn wait(mut qemu: Command, target: &Target, image: &Image) -> Result<(bool, String), RunError> {
+fn wait(mut qemu: Command, target: &Target, image: &Image, limit: Duration) -> Result<(bool, String), RunError> {
     let start = |source| RunError::Start { program: target.emulator.clone(), source };
     let mut child = qemu.spawn().map_err(start)?;
     let began = Instant::now();
@@ -123,10 +138,10 @@ fn wait(mut qemu: Command, target: &Target, image: &Image) -> Result<(bool, Stri
             let output = child.wait_with_output().map_err(start)?;
             return Ok((output.status.success(), String::from_utf8_lossy(&output.stderr).into_owned()));
         }
-        if began.elapsed() > TIME_LIMIT {
+        if began.elapsed() > limit {
             child.kill().map_err(start)?;
             child.wait().map_err(start)?;
-            return Err(RunError::Hung { image: image.path.clone() });
+            return Err(RunError::Hung { image: image.path.clone(), limit });
         }
         std::thread::sleep(Duration::from_millis(5));
     }

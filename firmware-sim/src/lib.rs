@@ -15,6 +15,7 @@
 //! | [`check`], [`report`] | measured against allowed; the table and the JSON |
 //! | [`browser`] | runs a page in headless Chromium |
 //! | [`same`] | host against targets on recorded clips |
+//! | [`soak`] | host against targets over very many frames |
 
 pub mod browser;
 pub mod build;
@@ -28,5 +29,6 @@ pub mod price;
 pub mod profile;
 pub mod report;
 pub mod same;
+pub mod soak;
 pub mod toolchain;
 pub mod workload;

@@ -8,6 +8,7 @@ use kinesic_firmware_sim::check::{Selection, check};
 use kinesic_firmware_sim::data::{Data, home};
 use kinesic_firmware_sim::report;
 use kinesic_firmware_sim::same::same;
+use kinesic_firmware_sim::soak;
 use miette::{IntoDiagnostic, WrapErr};
 
 /// Runs kinesic on simulated microcontrollers and checks that every frame fits.
@@ -53,6 +54,18 @@ enum Command {
         #[arg(long, default_value_t = 1000)]
         frames: usize,
     },
+    /// Runs workloads for very many frames and compares every output bit with the host's; exit 1 where one differs or is NaN.
+    Soak {
+        /// On this target (repeatable); see targets.toml.
+        #[arg(long, default_values_t = ["m4f".to_owned()])]
+        target: Vec<String>,
+        /// Only this workload (repeatable); see budgets.toml.
+        #[arg(long)]
+        workload: Vec<String>,
+        /// Frames of each workload, up to the next whole round of its input.
+        #[arg(long, default_value_t = 100_000)]
+        frames: usize,
+    },
 }
 
 fn main() -> miette::Result<ExitCode> {
@@ -80,6 +93,11 @@ fn main() -> miette::Result<ExitCode> {
             let compared = same(&Data::read(None)?, &clips, &target, frames, &|news| eprintln!("{news}"))?;
             print!("{}", compared.table());
             compared.failures()
+        }
+        Command::Soak { target, workload, frames } => {
+            let all = soak::soak(&Data::read(None)?, &target, &workload, frames, &|news| eprintln!("{news}"))?;
+            print!("{}", soak::table(&all));
+            soak::failures(&all)
         }
     };
     for failure in &failures {

@@ -59,7 +59,7 @@ pub fn same(
         let mut all = Vec::new();
         for one in &trained {
             let image = Image::read(&images.join(one.name))?;
-            let run = emulator::run(target, &image, &plugin, &one.prepared.input, &folders.run(name, one.name))?;
+            let run = emulator::run(target, &image, Some(&plugin), &one.prepared.input, &folders.run(name, one.name))?;
             all.push(Same {
                 workload: one.name,
                 target: name.to_owned(),

@@ -2,6 +2,7 @@
 
 use kinesic::emotion::{Emotion, EmotionState, Place};
 use kinesic::face::{FaceState, FaceSynth, POINTS};
+use kinesic::limit::{LimitState, Limiter};
 use kinesic::mechanics::{Blend, Decoupled, Modulation, Window, mix, modulate};
 use kinesic::{BodyMechanics, Components, ComponentsState, MechanicsState, Pack, Pose, Translator, TranslatorState};
 
@@ -17,6 +18,7 @@ pub fn step_all(pack: &Pack, frames: &mut Frames) {
     components(pack, frames);
     face(pack, frames);
     emotion(pack, frames);
+    limit(pack, frames);
 }
 
 fn translator(pack: &Pack, frames: &mut Frames) {
@@ -99,5 +101,22 @@ fn face(pack: &Pack, frames: &mut Frames) {
         model.step(&mut state, &landmarks, &mut offsets);
         model.read(&landmarks);
         model.shape((frames.next() % 16) as usize, frames.control());
+    }
+}
+
+/// Whatever goes in, what comes out is a pose, and within the table's ranges.
+fn limit(pack: &Pack, frames: &mut Frames) {
+    let Ok(model) = Limiter::<JOINTS>::load(pack) else { return };
+    let mut state = LimitState::new();
+    let mut out = Pose::identity();
+    model.start(&mut state, &frames.pose());
+    for _ in 0..STEPS {
+        let pose = frames.pose();
+        model.step(&mut state, (frames.next() % 8 != 0).then_some(&pose), &mut out);
+        assert!(out.is_sound(model.joints()), "{out:?}");
+        for (joint, (lower, upper)) in model.table().lower.iter().zip(model.table().upper).enumerate() {
+            let ranges = lower.iter().zip(upper);
+            assert!(state.angles(joint).iter().zip(ranges).all(|(x, (lower, upper))| (lower..=upper).contains(&x)));
+        }
     }
 }

@@ -8,6 +8,8 @@ mod clips;
 mod engines;
 mod frames;
 mod packs;
+mod robots;
 
 pub use clips::{bvh, csv, map};
 pub use packs::pack;
+pub use robots::urdf;

@@ -1,12 +1,51 @@
 //! Output files: whole or not at all.
 
+use std::ffi::{OsStr, OsString};
 use std::io::Write;
 use std::path::Path;
 
+use sha2::{Digest, Sha256};
+use tempfile::NamedTempFile;
+
+/// Characters of the random part of a temporary name.
+const RANDOM: usize = 6;
+/// End of every temporary name.
+const SUFFIX: &str = ".part";
+/// Longer names are told by their hash, so that the temporary one is not too long for the file system.
+const LONGEST: usize = 200;
+
 /// Writes a file through a temporary neighbour that is renamed over `path` at the end: an older file there stays untouched
 /// until then, and nothing half-written is ever seen under that name.
+///
+/// The neighbour is called `.kinesic-NAME-RANDOM.part` and locked while it is written. One that a killed process has left, for the
+/// same name, is removed.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let prefix = prefix(path);
+    remove_stale(folder, &prefix);
+    let mut file = temporary(folder, &prefix)?;
+    file.write_all(bytes)?;
+    // On the disk before it has the name: after a power cut there is the old file or the new one, not an empty one.
+    file.as_file().sync_all()?;
+    file.persist(path).map(|_| ()).map_err(|e| e.error)
+}
+
+/// How the temporary files for `path` begin.
+fn prefix(path: &Path) -> OsString {
+    let name = path.file_name().unwrap_or_default();
+    let mut prefix = OsString::from(".kinesic-");
+    if name.len() <= LONGEST {
+        prefix.push(name);
+    } else {
+        let hash = Sha256::digest(name.as_encoded_bytes());
+        prefix.push(hash.iter().map(|byte| format!("{byte:02x}")).collect::<String>());
+    }
+    prefix.push("-");
+    prefix
+}
+
+/// A new file that nobody takes for a left one: it is locked, and still there after that.
+fn temporary(folder: &Path, prefix: &OsStr) -> std::io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     #[cfg(unix)]
     {
@@ -14,9 +53,74 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
-    let mut file = builder.prefix(".kinesic").tempfile_in(folder)?;
-    file.write_all(bytes)?;
-    // On the disk before it has the name: after a power cut there is the old file or the new one, not an empty one.
-    file.as_file().sync_all()?;
-    file.persist(path).map(|_| ()).map_err(|e| e.error)
+    builder.prefix(prefix).suffix(SUFFIX).rand_bytes(RANDOM);
+    loop {
+        let file = builder.tempfile_in(folder)?;
+        // Where the file system knows no locks, nobody can lock the file to remove it either.
+        if file.as_file().lock().is_err() || file.path().exists() {
+            return Ok(file);
+        }
+    }
+}
+
+/// Removes what killed processes have left: files of this prefix that nobody holds a lock on. What cannot be removed does no harm.
+fn remove_stale(folder: &Path, prefix: &OsStr) {
+    let Ok(entries) = std::fs::read_dir(folder) else { return };
+    for entry in entries.flatten() {
+        let name = entry.file_name();
+        let rest = name.as_encoded_bytes().strip_prefix(prefix.as_encoded_bytes());
+        let random = rest.and_then(|rest| rest.strip_suffix(SUFFIX.as_bytes()));
+        if !random.is_some_and(|random| random.len() == RANDOM && random.iter().all(u8::is_ascii_alphanumeric)) {
+            continue;
+        }
+        let Ok(file) = std::fs::OpenOptions::new().write(true).open(entry.path()) else { continue };
+        if file.try_lock().is_ok() {
+            let _ = std::fs::remove_file(entry.path());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_killed_process_left_is_removed_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        let foreign = [
+            ".kinesic-x.kin-aB3dE.part",
+            ".kinesic-x.kin-aB3dE7",
+            ".kinesic-y.kin-aB3dE7.part",
+            ".kinesic-x.kin-a-3dE7.part",
+        ];
+        for name in foreign.into_iter().chain([".kinesic-x.kin-aB3dE7.part"]) {
+            std::fs::write(at(name), "half").unwrap();
+        }
+        // Another process is writing the same file.
+        let live = temporary(folder.path(), &prefix(&at("x.kin"))).unwrap();
+        write_whole(&at("x.kin"), b"whole").unwrap();
+        assert_eq!(std::fs::read(at("x.kin")).unwrap(), b"whole");
+        assert!(!at(".kinesic-x.kin-aB3dE7.part").exists());
+        assert!(live.path().exists());
+        assert!(foreign.iter().all(|name| at(name).exists()));
+        drop(live);
+        let long = "n".repeat(250);
+        write_whole(&at(&long), b"long").unwrap();
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), foreign.len() + 2);
+    }
+
+    #[test]
+    fn writers_of_one_file_do_not_take_it_from_each_other() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("x.kin");
+        std::thread::scope(|scope| {
+            for writer in 0..4u8 {
+                let path = &path;
+                scope.spawn(move || (0..50).for_each(|_| write_whole(path, &[writer; 100]).unwrap()));
+            }
+        });
+        assert_eq!(std::fs::read(&path).unwrap().len(), 100);
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
 }

@@ -20,6 +20,7 @@ pub mod pack;
 pub mod prepare;
 pub mod quality;
 pub mod quantise;
+pub mod reached;
 pub mod report;
 pub mod retarget;
 pub mod rig;

@@ -169,3 +169,33 @@ fn a_second_process_never_sees_half_a_file() {
     }
     assert!(writers.iter_mut().all(|writer| writer.wait().unwrap().success()));
 }
+
+#[test]
+fn what_a_kill_in_mid_write_leaves_is_gone_after_the_next_run() {
+    let folder = folder();
+    let at = folder.path();
+    let command = "apply weary.kin walk.bvh --out x.bvh";
+    shell(at, &format!("\"$0\" {command}"));
+    let expected = std::fs::read(at.join("x.bvh")).unwrap();
+    let left = || names(at).into_iter().filter(|name| name.starts_with(".kinesic-x.bvh-")).count();
+    let mut tries = 0;
+    while left() == 0 {
+        let mut child = Command::new(KINESIC)
+            .args(command.split(' '))
+            .current_dir(at)
+            .stdout(std::process::Stdio::null())
+            .spawn()
+            .unwrap();
+        // As soon as there is a temporary file.
+        while child.try_wait().unwrap().is_none() && left() == 0 {}
+        let _ = child.kill();
+        child.wait().unwrap();
+        assert!(std::fs::read(at.join("x.bvh")).unwrap() == expected, "half a file under the final name");
+        tries += 1;
+        assert!(tries < 500, "no kill came in mid-write");
+    }
+    println!("killed in mid-write at try {tries}");
+    shell(at, &format!("\"$0\" {command}"));
+    assert_eq!(left(), 0);
+    assert!(std::fs::read(at.join("x.bvh")).unwrap() == expected);
+}

@@ -17,6 +17,11 @@ const KINESIC: &str = env!("CARGO_BIN_EXE_kinesic");
 
 /// A training of about a second.
 const TRAIN: &str = "train mechanics --clips walk.bvh weary.bvh --split sample --hidden 96 --epochs 60 --checkpoint-every 0 --out x.kin";
+/// The other engines, each for about as long.
+const OTHERS: [&str; 2] = [
+    "train translate --pair walk.bvh weary.bvh --pair weary.bvh walk.bvh --checkpoint-every 0 --out x.kin",
+    "train components --content walk.bvh --style weary.bvh --curve --checkpoint-every 0 --out x.kin",
+];
 
 fn command(folder: &Path, line: &str) -> Command {
     let mut command = Command::new(KINESIC);
@@ -53,11 +58,21 @@ fn kill_after(mut child: Child, delay: Duration) -> bool {
 
 #[test]
 fn a_killed_training_goes_on_to_the_same_pack() {
+    killed(TRAIN);
+}
+
+#[test]
+fn so_do_translators_and_components() {
+    OTHERS.into_iter().for_each(killed);
+}
+
+/// Kills the training `line` at random moments.
+fn killed(line: &str) {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     files::make(at);
     let begun = Instant::now();
-    succeed(at, TRAIN);
+    succeed(at, line);
     let whole = begun.elapsed();
     let expected = results(at);
     assert!(expected.iter().all(Option::is_some) && !at.join("x.checkpoint").exists());
@@ -68,26 +83,26 @@ fn a_killed_training_goes_on_to_the_same_pack() {
     for _ in 0..kills {
         clean(at);
         let delay = whole.mul_f64(random.random_range(0.0..1.0));
-        early += u64::from(kill_after(command(at, TRAIN).spawn().unwrap(), delay));
+        early += u64::from(kill_after(command(at, line).spawn().unwrap(), delay));
         // Whole or not at all, whatever the moment.
         for (left, expected) in results(at).iter().zip(&expected) {
             assert!(left.is_none() || left == expected, "half a file after {delay:?}");
         }
-        let resumed = succeed(at, &format!("{TRAIN} --resume"));
+        let resumed = succeed(at, &format!("{line} --resume"));
         went_on += usize::from(String::from_utf8_lossy(&resumed.stderr).contains("going on from here"));
         assert!(results(at) == expected, "another pack after a kill at {delay:?} of {whole:?}");
         assert!(!at.join("x.checkpoint").exists());
     }
-    println!("{kills} kills within {whole:?}: {early} before the end, {went_on} went on from a checkpoint");
+    println!("{line}\n{kills} kills within {whole:?}: {early} before the end, {went_on} went on from a checkpoint");
 
     // Killed again and again: every run begins where the last one has come to.
     clean(at);
     let mut runs = 0;
     while !at.join("x.kin").exists() && runs < 40 {
-        kill_after(command(at, &format!("{TRAIN} --resume")).spawn().unwrap(), whole.mul_f64(0.5));
+        kill_after(command(at, &format!("{line} --resume")).spawn().unwrap(), whole.mul_f64(0.5));
         runs += 1;
     }
-    succeed(at, &format!("{TRAIN} --resume"));
+    succeed(at, &format!("{line} --resume"));
     assert!(results(at) == expected);
     println!("killed every {:?}: done after {runs} runs", whole.mul_f64(0.5));
 }

@@ -5,6 +5,8 @@ mod engines;
 #[path = "common/robot.rs"]
 mod robot;
 
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::time::Instant;
 
 use engines::{ENGINES, Motion, Packs, new_state};
@@ -44,23 +46,48 @@ fn soak(packs: &Packs, engine: &str, frames: u64) -> Soaked {
     soaked
 }
 
-/// Two runs of every engine, and a row of the table in `docs/reliability.md`.
+/// Two runs of every engine, as many at a time as there are cores, and a row of the table in `docs/reliability.md`.
 fn twice(frames: u64) {
     let packs = Packs::new();
+    let before = resident();
     println!(
         "| engine | frames | drift of norms | root from the source's, at most, m | us a frame | hash of all bits, both runs |"
     );
     println!("|---|---|---|---|---|---|");
-    for engine in ENGINES {
-        let start = Instant::now();
-        let first = soak(&packs, engine, frames);
-        let time = start.elapsed().as_secs_f64() * 1e6 / frames as f64;
+    let next = AtomicUsize::new(0);
+    let runs: [OnceLock<Soaked>; 2 * ENGINES.len()] = std::array::from_fn(|_| OnceLock::new());
+    let work = || {
+        while let Some((at, run)) = Some(next.fetch_add(1, Relaxed)).and_then(|at| Some((at, runs.get(at)?))) {
+            let engine = ENGINES[at / 2];
+            let start = Instant::now();
+            let found = *run.get_or_init(|| soak(&packs, engine, frames));
+            let time = start.elapsed().as_secs_f64() * 1e6 / frames as f64;
+            let Soaked { hash, worst_norm, farthest_root, .. } = found;
+            println!("| {engine} | {frames} | {worst_norm:.1e} | {farthest_root:.2} | {time:.1} | {hash:016x} |");
+        }
+    };
+    std::thread::scope(|scope| {
+        for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
+            scope.spawn(work);
+        }
+    });
+    for (pair, engine) in runs.chunks(2).zip(ENGINES) {
+        let first = pair[0].get().unwrap();
         assert!(first.worst_norm < 1e-5, "{engine}: {first:?}");
         assert_eq!((first.engine_faults, first.faulty_frames), (0, 0), "{engine}");
-        assert_eq!(first, soak(&packs, engine, frames), "{engine}: a second run");
-        let Soaked { hash, worst_norm, farthest_root, .. } = first;
-        println!("| {engine} | {frames} | {worst_norm:.1e} | {farthest_root:.2} | {time:.1} | {hash:016x} |");
+        assert_eq!(pair[1].get(), Some(first), "{engine}: a second run");
     }
+    if let (Some(before), Some(after)) = (before, resident()) {
+        println!("resident memory: {before} kB before, {after} kB after");
+        // Stacks of the threads are in it, and what the allocator keeps of them.
+        assert!(after < before + 4096, "memory grew");
+    }
+}
+
+/// Resident memory of this process, kB, where the system tells.
+fn resident() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?.trim().strip_suffix(" kB")?.parse().ok()
 }
 
 #[test]

@@ -2,8 +2,10 @@
 //! to be trained to measure it, and a better trainer does not move the budgets.
 
 use faer::Mat;
+use kinesic_host::clip::Clip;
 use kinesic_host::components::{ComponentsModel, Factors, Motion};
 use kinesic_host::pack::Provenance;
+use kinesic_host::rig::Rig;
 use kinesic_workloads::components::{COUNT, JOINTS, Restyle};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
@@ -21,17 +23,23 @@ const STORED: usize = 60;
 pub fn prepare(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
     let rig = made::short_rig();
     let walk = made::walk_on(&rig.skeleton, frames, SEED);
-    let poses = rig.poses(&walk);
+    on_host::<Restyle>(name, "components.kin", pack(&rig, &walk), &numbers(&rig, &walk, JOINTS))
+}
+
+/// The pack for a walk on a rig.
+pub fn pack(rig: &Rig, walk: &Clip) -> Vec<u8> {
+    let joints = rig.joints();
+    let poses = rig.poses(walk);
     let Motion { mean, scale, .. } = Motion::new(&rig.locals(&poses));
     let mut random = ChaCha8Rng::seed_from_u64(SEED);
     let mut matrix = |rows: usize, columns: usize, size: f64| -> Mat<f64> {
         Mat::from_fn(rows, columns, |_, _| random.random_range(-size..size))
     };
-    let mut components = matrix(3 * JOINTS, COUNT, 0.5);
-    let change = matrix(3 * JOINTS, COUNT, 0.1);
+    let mut components = matrix(3 * joints, COUNT, 0.5);
+    let change = matrix(3 * joints, COUNT, 0.1);
     let weights = matrix(STORED, COUNT, 1.0);
     for k in 0..COUNT {
-        for joint in (0..JOINTS).filter(|_| random.random_bool(1.0 - DENSITY)).collect::<Vec<_>>() {
+        for joint in (0..joints).filter(|_| random.random_bool(1.0 - DENSITY)).collect::<Vec<_>>() {
             (0..3).for_each(|axis| components[(3 * joint + axis, k)] = 0.0);
         }
     }
@@ -44,9 +52,9 @@ pub fn prepare(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
         learned: &components + &change,
         content: Factors { weights, components },
         track: vec![[0.0, 0.02, 0.0, 1.0]; STORED],
-        reference: poses[0].rotations[..JOINTS].iter().map(|rotation| rotation.coords.into()).collect(),
+        reference: poses[0].rotations[..joints].iter().map(|rotation| rotation.coords.into()).collect(),
         strength: [0.0, 1.0],
     };
     let provenance = Provenance { tool: "kinesic-firmware-sim".to_owned(), seed: SEED, ..Provenance::default() };
-    on_host::<Restyle>(name, "components.kin", model.pack(&rig, &provenance), &numbers(&rig, &walk, JOINTS))
+    model.pack(rig, &provenance)
 }

@@ -3,6 +3,7 @@
 
 use kinesic_host::limit::{JointLimit, LimitsModel};
 use kinesic_host::pack::Provenance;
+use kinesic_host::rig::Rig;
 use kinesic_workloads::limit::{JOINTS, Limit};
 
 use super::translator::numbers;
@@ -16,6 +17,13 @@ const Z: [f32; 3] = [0.0, 0.0, 1.0];
 
 pub fn prepare(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
     let rig = made::short_rig();
+    let provenance = Provenance { tool: "kinesic-firmware-sim".to_owned(), seed: SEED, ..Provenance::default() };
+    let walk = made::walk_on(&rig.skeleton, frames, SEED);
+    on_host::<Limit>(name, "limit.kin", limits(&rig).pack(&rig, &provenance), &numbers(&rig, &walk, JOINTS))
+}
+
+/// The limits of a rig whose joints have the made body's names.
+pub fn limits(rig: &Rig) -> LimitsModel {
     let mut model = LimitsModel::free("made", FRAME_RATE, rig.joints(), 6.0, 60.0);
     for (limit, joint) in model.joints.iter_mut().zip(&rig.skeleton.joints).skip(1) {
         let is = |ends: &[&str]| ends.iter().any(|end| joint.name.ends_with(end));
@@ -27,7 +35,5 @@ pub fn prepare(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
             JointLimit::ball([Y, Z, X], [-0.2; 3], [0.2; 3], 3.0, 30.0)
         };
     }
-    let provenance = Provenance { tool: "kinesic-firmware-sim".to_owned(), seed: SEED, ..Provenance::default() };
-    let walk = made::walk_on(&rig.skeleton, frames, SEED);
-    on_host::<Limit>(name, "limit.kin", model.pack(&rig, &provenance), &numbers(&rig, &walk, JOINTS))
+    model
 }

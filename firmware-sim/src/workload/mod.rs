@@ -9,6 +9,7 @@ mod face;
 mod kernel;
 mod limit;
 mod mechanics;
+mod pipeline;
 pub mod recorded;
 mod translator;
 
@@ -30,6 +31,20 @@ pub struct Prepared {
     pub input: Vec<u8>,
     /// Hash of each frame's output on the host.
     pub hashes: Vec<u64>,
+    run: Host,
+}
+
+/// The same workload on the host over other input: a hash a frame, and how many frames had a number that is not finite.
+type Host = fn(pack: &[u8], input: &[u8]) -> Option<(Vec<u64>, usize)>;
+
+impl Prepared {
+    /// The same frames, `rounds` times over, the state going on; and the number of frames with numbers that are not finite.
+    pub fn rounds(&self, rounds: u32) -> Option<(Self, usize)> {
+        let mut input = self.input.clone();
+        input.get_mut(12..16)?.copy_from_slice(&rounds.to_le_bytes());
+        let (hashes, broken) = (self.run)(&self.pack, &input)?;
+        Some((Self { input, hashes, ..self.clone() }, broken))
+    }
 }
 
 /// The host cannot run a workload.
@@ -89,6 +104,7 @@ const ALL: &[(&str, Make)] = &[
     ("face", face::prepare),
     ("emotion-change", emotion::change),
     ("emotion-play", emotion::play),
+    ("pipeline", pipeline::prepare),
     ("kernel-f32", kernel::f32),
     ("kernel-i8", kernel::i8),
 ];
@@ -110,22 +126,27 @@ fn on_host<W: Workload>(
     frames: &[Vec<f32>],
 ) -> Result<Prepared, WorkloadError> {
     let stride = frames.first().map_or(0, Vec::len) * 4;
-    let mut input: Vec<u8> = bytemuck::cast_slice(&Frames::header(frames.len() as u32, stride as u32)).to_vec();
+    let mut input: Vec<u8> = bytemuck::cast_slice(&Frames::header(frames.len() as u32, stride as u32, 1)).to_vec();
     frames.iter().for_each(|frame| input.extend_from_slice(bytemuck::cast_slice(frame)));
 
-    let words = aligned(&pack);
-    let refused = |_| WorkloadError::Refused { name: name.to_owned() };
-    let model = W::open(&bytemuck::cast_slice(&words)[..pack.len()]).map_err(refused)?;
+    let (hashes, _) = play::<W>(&pack, &input).ok_or_else(|| WorkloadError::Refused { name: name.to_owned() })?;
+    Ok(Prepared { pack_name, pack, input, hashes, run: play::<W> })
+}
+
+fn play<W: Workload>(pack: &[u8], input: &[u8]) -> Option<(Vec<u64>, usize)> {
+    let words = aligned(pack);
+    let model = W::open(&bytemuck::cast_slice(&words)[..pack.len()]).ok()?;
     let mut state = W::power_on(&model);
-    let mut hashes = Vec::with_capacity(frames.len());
-    for frame in frames {
-        W::load(&model, &mut state, bytemuck::cast_slice(frame));
+    let (mut hashes, mut broken) = (Vec::new(), 0);
+    for frame in Frames::open(input)?.iter() {
+        W::load(&model, &mut state, frame);
         W::step(&model, &mut state);
         let mut digest = Digest::default();
         W::output(&model, &state, &mut digest);
         hashes.push(digest.value());
+        broken += usize::from(!digest.is_finite());
     }
-    Ok(Prepared { pack_name, pack, input, hashes })
+    Some((hashes, broken))
 }
 
 /// Packs are used in place and need their alignment on the host as in flash.

@@ -15,7 +15,6 @@ use crate::made::{self, FRAME_RATE};
 const SEED: u64 = 3;
 const ORDER: usize = 40;
 const DRIVES: usize = 8;
-const CHANNELS: usize = 3 * JOINTS;
 
 pub fn per_joint(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
     let mut random = ChaCha8Rng::seed_from_u64(SEED);
@@ -28,25 +27,32 @@ pub fn per_joint(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
         block
     };
     let bank = (0..JOINTS).map(|_| (0..ORDER / 2).map(|_| block()).collect()).collect();
-    let (pack, frames) = pack(BankModel::PerJoint(bank), Vec::new(), frames);
-    on_host::<PerJoint>(name, "translator.kin", pack, &frames)
+    let (rig, clip) = (made::rig(), made::walk(frames, SEED));
+    let pack = pack(&rig, &clip, BankModel::PerJoint(bank), Vec::new());
+    on_host::<PerJoint>(name, "translator.kin", pack, &numbers(&rig, &clip, JOINTS))
 }
 
 pub fn whole_body(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
+    let (rig, clip) = (made::rig(), made::walk(frames, SEED));
+    on_host::<WholeBody>(name, "translator-body.kin", shared(&rig, &clip), &numbers(&rig, &clip, JOINTS))
+}
+
+/// The pack of one model for all joints of a rig.
+pub fn shared(rig: &Rig, clip: &Clip) -> Vec<u8> {
+    let channels = 3 * rig.joints();
     let mut random = ChaCha8Rng::seed_from_u64(SEED);
     let transition = (0..ORDER / 2).map(|_| stable(&mut random)).collect();
     let mut matrix = |rows: usize, columns: usize, size: f64| -> Vec<f64> {
         (0..rows * columns).map(|_| random.random_range(-size..size)).collect()
     };
     let bank = BankModel::WholeBody {
-        project: matrix(DRIVES, CHANNELS, 0.2),
+        project: matrix(DRIVES, channels, 0.2),
         transition,
         input: matrix(ORDER, DRIVES, 0.1),
-        output: matrix(CHANNELS, ORDER + DRIVES, 0.002),
+        output: matrix(channels, ORDER + DRIVES, 0.002),
     };
     let states = matrix(1, ORDER + DRIVES, 0.01);
-    let (pack, frames) = pack(bank, states, frames);
-    on_host::<WholeBody>(name, "translator-body.kin", pack, &frames)
+    pack(rig, clip, bank, states)
 }
 
 /// A rotation-scaling block with poles inside the unit circle.
@@ -56,12 +62,11 @@ fn stable(random: &mut ChaCha8Rng) -> [f64; 4] {
     [re, -im, im, re]
 }
 
-/// The pack around a bank, and the frames of a made walk.
-fn pack(bank: BankModel, timing_states: Vec<f64>, frames: usize) -> (Vec<u8>, Vec<Vec<f32>>) {
-    let rig = made::rig();
-    let clip = made::walk(frames, SEED);
-    let (mean, deviation) = moments(&rig, &clip);
-    let mut direct = vec![0.0; 9 * JOINTS];
+/// The pack around a bank, for a walk on a rig.
+fn pack(rig: &Rig, clip: &Clip, bank: BankModel, timing_states: Vec<f64>) -> Vec<u8> {
+    let channels = 3 * rig.joints();
+    let (mean, deviation) = moments(rig, clip);
+    let mut direct = vec![0.0; 3 * channels];
     for (channel, deviation) in deviation.iter().enumerate() {
         direct[channel / 3 * 9 + channel % 3 * 4] = 0.9 * deviation;
     }
@@ -73,20 +78,21 @@ fn pack(bank: BankModel, timing_states: Vec<f64>, frames: usize) -> (Vec<u8>, Ve
         mean,
         direct,
         bank,
-        timing: TimingModel { bias: 0.1, range: [-1.0, 1.0], input: vec![0.002; CHANNELS], states: timing_states },
+        timing: TimingModel { bias: 0.1, range: [-1.0, 1.0], input: vec![0.002; channels], states: timing_states },
         strength: [0.0, 1.5],
     };
     let provenance = Provenance { tool: "kinesic-firmware-sim".to_owned(), seed: SEED, ..Provenance::default() };
-    (model.pack(&rig, &provenance), numbers(&rig, &clip, JOINTS))
+    model.pack(rig, &provenance)
 }
 
 /// Mean and deviation of each heading-local channel; the root's row is its travel and height.
 fn moments(rig: &Rig, clip: &Clip) -> (Vec<f64>, Vec<f64>) {
     let locals = rig.locals(&rig.poses(clip));
+    let channels = 3 * rig.joints();
     let frames = locals.frames() as f64;
-    let mut mean = vec![0.0; CHANNELS];
-    let mut square = vec![0.0; CHANNELS];
-    for (row, travel) in locals.positions.chunks_exact(CHANNELS).zip(&locals.travel) {
+    let mut mean = vec![0.0; channels];
+    let mut square = vec![0.0; channels];
+    for (row, travel) in locals.positions.chunks_exact(channels).zip(&locals.travel) {
         for (channel, value) in row.iter().enumerate() {
             let value = match channel {
                 0 => travel[0],

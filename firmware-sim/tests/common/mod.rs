@@ -35,8 +35,8 @@ impl Bench {
 
     /// Runs an image over empty frames.
     pub fn run(&self, target: &str, binary: &str, image: &Image, frames: u32) -> Result<Run, RunError> {
-        let mut input: Vec<u8> = Frames::header(frames, 4).iter().flat_map(|word| word.to_le_bytes()).collect();
+        let mut input: Vec<u8> = Frames::header(frames, 4, 1).iter().flat_map(|word| word.to_le_bytes()).collect();
         input.resize(input.len() + 4 * frames as usize, 0);
-        emulator::run(self.target(target), image, &self.plugin, &input, &self.folders.run(target, binary))
+        emulator::run(self.target(target), image, Some(&self.plugin), &input, &self.folders.run(target, binary))
     }
 }

@@ -1,4 +1,5 @@
-//! The block of input frames: `magic, frames, bytes per frame, 0` as little-endian words, then the frames.
+//! The block of input frames: `magic, frames, bytes per frame, rounds` as little-endian words, then the frames. A round is all frames
+//! in order; the state goes on from round to round. No rounds are one.
 //!
 //! The emulator places it in memory outside the part's flash and RAM, where a sensor's DMA buffer would be, so that the
 //! image's sizes are the product's and another clip needs no new image.
@@ -11,6 +12,7 @@ const HEADER: usize = 16;
 pub struct Frames<'a> {
     count: usize,
     stride: usize,
+    rounds: usize,
     bytes: &'a [u8],
 }
 
@@ -20,9 +22,9 @@ fn word(bytes: &[u8], index: usize) -> Option<u32> {
 }
 
 impl<'a> Frames<'a> {
-    /// Bytes of the header, and the header itself for `count` frames of `stride` bytes.
-    pub fn header(count: u32, stride: u32) -> [u32; HEADER / 4] {
-        [MAGIC, count, stride, 0]
+    /// The header for `count` frames of `stride` bytes, played `rounds` times.
+    pub fn header(count: u32, stride: u32, rounds: u32) -> [u32; HEADER / 4] {
+        [MAGIC, count, stride, rounds]
     }
 
     /// Length of the whole block, read from its header; `None` if it is no such block.
@@ -36,12 +38,14 @@ impl<'a> Frames<'a> {
     /// Views a block. `None` if the magic or the length is wrong.
     pub fn open(block: &'a [u8]) -> Option<Self> {
         let whole = block.get(..Self::block_len(block)?)?;
-        Some(Self { count: word(block, 1)? as usize, stride: word(block, 2)? as usize, bytes: whole.get(HEADER..)? })
+        let [count, stride, rounds] = [word(block, 1)? as usize, word(block, 2)? as usize, word(block, 3)? as usize];
+        Some(Self { count, stride, rounds: rounds.max(1), bytes: whole.get(HEADER..)? })
     }
 
-    /// The frames in order.
+    /// The frames in order, round after round.
     pub fn iter(&self) -> impl Iterator<Item = &'a [u8]> {
-        let (bytes, stride) = (self.bytes, self.stride);
-        (0..self.count).map_while(move |frame| bytes.get(frame * stride..frame * stride + stride))
+        let Self { count, stride, rounds, bytes } = *self;
+        let frames = (0..rounds).flat_map(move |_| 0..count);
+        frames.map_while(move |frame| bytes.get(frame * stride..frame * stride + stride))
     }
 }

@@ -12,6 +12,7 @@ mod frames;
 pub mod kernel;
 pub mod limit;
 pub mod mechanics;
+pub mod pipeline;
 pub mod pose;
 pub mod translator;
 

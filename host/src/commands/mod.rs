@@ -14,6 +14,7 @@ mod export;
 mod expression;
 mod face;
 mod inspect;
+mod limits;
 mod mask;
 mod mix;
 mod modulate;
@@ -60,6 +61,7 @@ enum Command {
     View(view::Args),
     Quantize(quantize::Args),
     Score(score::Args),
+    Limits(limits::Args),
     Export(export::Args),
     Completions(completions::Args),
     Face(face::Args),
@@ -81,6 +83,7 @@ pub fn run(cli: Cli) -> miette::Result<()> {
         Command::View(args) => view::run(&args),
         Command::Quantize(args) => quantize::run(&args),
         Command::Score(args) => score::run(&args),
+        Command::Limits(args) => limits::run(&args),
         Command::Export(args) => export::run(&args),
         Command::Completions(args) => completions::run(&args),
         Command::Face(args) => face::run(&args),

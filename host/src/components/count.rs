@@ -1,7 +1,9 @@
 //! How many components: the paper leaves it open (its open point 1).
 
+use super::factor::{Factors, flat, unflat};
 use super::matrix::Motion;
 use super::sparse::{Sparse, Sparsity, sparse};
+use crate::reached::Reached;
 
 /// Numbers that are tried.
 const CANDIDATES: std::ops::RangeInclusive<usize> = 1..=12;
@@ -25,12 +27,18 @@ pub struct Choice {
 ///
 /// Every candidate is factorised at the wanted density and refitted, so that it is judged by what it would do.
 pub fn choose(motion: &Motion, sparsity: &Sparsity) -> (Choice, Sparse) {
+    choose_kept(motion, sparsity, &Reached::nothing())
+}
+
+/// The same, going on from what an earlier run has reached.
+pub(super) fn choose_kept(motion: &Motion, sparsity: &Sparsity, reached: &Reached) -> (Choice, Sparse) {
+    let sparse = |count| kept(motion, count, sparsity, reached, "content");
     let most = motion.channels().min(motion.frames());
     let mut tried: Vec<(usize, f64)> = Vec::new();
     let mut last: Option<(usize, Sparse)> = None;
     for count in CANDIDATES.map(|step| step * STRIDE) {
         let count = count.min(most);
-        let found = sparse(motion.values.as_ref(), count, sparsity);
+        let found = sparse(count);
         let error = joint_error(motion, &found);
         if let (Some((before, sparse)), Some((_, old))) = (last, tried.last().copied()) {
             let gain = old - error;
@@ -49,8 +57,22 @@ pub fn choose(motion: &Motion, sparsity: &Sparsity) -> (Choice, Sparse) {
     }
     let (count, error) = tried.last().copied().unwrap_or_default();
     let reason = format!("{count} components, the most that are tried, reproduce the clip to {error:.2} cm a joint");
-    let found = last.map_or_else(|| sparse(motion.values.as_ref(), 1, sparsity), |(_, sparse)| sparse);
+    let found = last.map_or_else(|| sparse(1), |(_, sparse)| sparse);
     (Choice { count: count.max(1), reason, tried }, found)
+}
+
+/// [`sparse`] of a motion of this name, or what an earlier run has found.
+pub(super) fn kept(motion: &Motion, count: usize, sparsity: &Sparsity, reached: &Reached, name: &str) -> Sparse {
+    let found = reached.always(&format!("{name} {count}"), || {
+        let Sparse { factors, history } = sparse(motion.values.as_ref(), count, sparsity);
+        [&[factors.weights.ncols() as f64], &flat(&factors.weights)[..], &flat(&factors.components), &history].concat()
+    });
+    // The number of columns, both matrices, and the rest.
+    let (columns, rest) = found.split_first().map_or((0, &[][..]), |(columns, rest)| (*columns as usize, rest));
+    let (weights, rest) = rest.split_at(motion.frames() * columns);
+    let (components, history) = rest.split_at(motion.channels() * columns);
+    let factors = Factors { weights: unflat(weights, columns), components: unflat(components, columns) };
+    Sparse { factors, history: history.to_vec() }
 }
 
 /// Root mean square distance of a joint from where it should be, cm.

@@ -190,3 +190,13 @@ pub(super) fn groups(column: &[f64]) -> impl Iterator<Item = [f64; 3]> {
 fn norm(group: &[f64]) -> f64 {
     group.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
+/// The entries column by column.
+pub(super) fn flat(matrix: &Mat<f64>) -> Vec<f64> {
+    (0..matrix.ncols()).flat_map(|k| column(matrix, k).to_vec()).collect()
+}
+
+/// A matrix of so many columns from its entries column by column.
+pub(super) fn unflat(values: &[f64], columns: usize) -> Mat<f64> {
+    let rows = values.len().checked_div(columns).unwrap_or(0);
+    Mat::from_fn(rows, columns, |row, column| values[column * rows + row])
+}

@@ -43,4 +43,4 @@ pub use play::{HostComponents, MAX_COMPONENTS, Settings, play, play_stored};
 pub use prune::prune;
 pub use refit::refit;
 pub use sparse::{Sparse, Sparsity, sparse};
-pub use train::{TradeOff, TrainError, TrainOptions, Trained, composed, trade_off, train};
+pub use train::{TradeOff, TrainError, TrainOptions, Trained, composed, trade_off, train, train_kept};

@@ -2,15 +2,16 @@
 
 use kinesic::pose::{Heading, World, forward};
 
-use super::count::{Choice, choose};
-use super::factor::Factors;
+use super::count::{Choice, choose_kept, kept};
+use super::factor::{Factors, flat, unflat};
 use super::learn::{Learned, Optimiser, learn, noise};
 use super::matrix::{FRAME_RATE, Motion};
 use super::measure::{BoneError, bone_error, content_distance, style_distance};
 use super::model::ComponentsModel;
-use super::objective::{Bone, Objective, Weights, bones};
-use super::sparse::{Sparse, Sparsity, sparse};
+use super::objective::{Bone, Objective, Terms, Weights, bones};
+use super::sparse::{Sparse, Sparsity};
 use crate::clip::Clip;
+use crate::reached::Reached;
 use crate::rig::{MAX_JOINTS, Rig};
 
 /// Mean bone error, percent, up to which an exaggerated strength counts as plausible before the bones are restored.
@@ -110,6 +111,18 @@ pub fn train(
     name: &str,
     options: &TrainOptions,
 ) -> Result<Trained, TrainError> {
+    train_kept(rig, content, style, name, options, &Reached::nothing())
+}
+
+/// The same; every factorisation and the learned components are kept in `reached`, and taken from there where they are known.
+pub fn train_kept(
+    rig: &Rig,
+    content: &Clip,
+    style: &Clip,
+    name: &str,
+    options: &TrainOptions,
+    reached: &Reached,
+) -> Result<Trained, TrainError> {
     check(options)?;
     let poses = rig.poses(content);
     let content = Motion::new(&rig.locals(&poses));
@@ -121,20 +134,19 @@ pub fn train(
     }
     let most = content.channels().min(content.frames()).min(super::play::MAX_COMPONENTS);
     let (choice, own) = match options.count {
-        None => choose(&content, &options.sparsity),
+        None => choose_kept(&content, &options.sparsity, reached),
         Some(count) if count == 0 || count > most => return Err(TrainError::Count { found: count, most }),
         Some(count) => {
             let choice = Choice { count, reason: "as asked for".to_owned(), tried: Vec::new() };
-            (choice, sparse(content.values.as_ref(), count, &options.sparsity))
+            (choice, kept(&content, count, &options.sparsity, reached, "content"))
         }
     };
-    let wanted = sparse(other.values.as_ref(), choice.count.min(other.frames()), &options.sparsity);
+    let wanted = kept(&other, choice.count.min(other.frames()), &options.sparsity, reached, "style");
     let bones = bones(rig);
     let shift: Vec<f64> = content.mean.iter().zip(&other.mean).map(|(a, b)| options.posture * (b - a)).collect();
     let mean: Vec<f64> = content.mean.iter().zip(&shift).map(|(a, b)| a + b).collect();
     let objective = Objective::new(&own.factors, &wanted.factors, &bones, &mean, content.scale, options.weights);
-    let start = noise(content.channels(), choice.count, options.optimiser.seed);
-    let learned = learn(&objective, start, &options.optimiser);
+    let learned = learned(&objective, content.channels(), choice.count, &options.optimiser, reached, "learn");
     let mut model = ComponentsModel {
         style: name.to_owned(),
         frame_rate: FRAME_RATE,
@@ -162,6 +174,28 @@ pub fn train(
     })
 }
 
+/// [`learn`] from noise, or what an earlier run has learned.
+fn learned(
+    objective: &Objective,
+    channels: usize,
+    count: usize,
+    optimiser: &Optimiser,
+    reached: &Reached,
+    name: &str,
+) -> Learned {
+    let found = reached.always(name, || {
+        let Learned { components, history, terms } =
+            learn(objective, noise(channels, count, optimiser.seed), optimiser);
+        let Terms { content, style, bones, smooth } = terms;
+        [&[content, style, bones, smooth][..], &flat(&components), &history].concat()
+    });
+    let (terms, rest) = found.split_first_chunk().map_or(([0.0; 4], &[][..]), |(terms, rest)| (*terms, rest));
+    let [content, style, bones, smooth] = terms;
+    let (components, history) = rest.split_at(channels * count);
+    let terms = Terms { content, style, bones, smooth };
+    Learned { components: unflat(components, count), history: history.to_vec(), terms }
+}
+
 /// What training ends at for each weight of the style, content weight 1: the trade-off that the paper sets by hand.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct TradeOff {
@@ -176,7 +210,13 @@ pub struct TradeOff {
 }
 
 /// The trade-off curve of a trained pair over `weights`; every point starts from the same noise.
-pub fn trade_off(rig: &Rig, trained: &Trained, options: &TrainOptions, weights: &[f64]) -> Vec<TradeOff> {
+pub fn trade_off(
+    rig: &Rig,
+    trained: &Trained,
+    options: &TrainOptions,
+    weights: &[f64],
+    reached: &Reached,
+) -> Vec<TradeOff> {
     let bones = bones(rig);
     let model = &trained.model;
     let mean: Vec<f64> = model.mean.iter().zip(&model.shift).map(|(a, b)| a + b).collect();
@@ -184,8 +224,8 @@ pub fn trade_off(rig: &Rig, trained: &Trained, options: &TrainOptions, weights: 
         let weights = Weights { style: *style, ..options.weights };
         let objective =
             Objective::new(&trained.content.factors, &trained.style.factors, &bones, &mean, model.scale, weights);
-        let start = noise(mean.len(), trained.choice.count, options.optimiser.seed);
-        let learned = learn(&objective, start, &options.optimiser).components;
+        let (count, step) = (trained.choice.count, format!("learn with {style}"));
+        let learned = learned(&objective, mean.len(), count, &options.optimiser, reached, &step).components;
         let model = ComponentsModel { learned, ..model.clone() };
         TradeOff {
             style_weight: *style,

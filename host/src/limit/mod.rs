@@ -1,8 +1,11 @@
-//! Joint limits: how they go into a pack. The device side, and what the tables mean, is [`kinesic::limit`].
+//! Joint limits: how they go into a pack, and where they come from. The device side, and what the tables mean, is [`kinesic::limit`].
 
 mod joint;
+pub mod robot;
+mod table;
 
 pub use joint::JointLimit;
+pub use table::{Entry, Table};
 
 use kinesic::limit::{LimitTable, Limiter};
 use kinesic::model::{Kind, LimitsMeta, LoadError, ModelMeta, Pack};
@@ -37,6 +40,12 @@ impl LimitsModel {
     pub fn check(&self) -> Result<(), LoadError> {
         let tables = self.tables();
         Limiter::<MAX_JOINTS>::new(tables.view(), self.meta, self.frame_rate as f32).map(|_| ())
+    }
+
+    /// See [`Limiter::recovery_frames`].
+    pub fn recovery_frames(&self) -> Result<u32, LoadError> {
+        let tables = self.tables();
+        Ok(HostLimiter::new(tables.view(), self.meta, self.frame_rate as f32)?.recovery_frames())
     }
 
     /// The tables of a pack of this or another kind.
@@ -74,6 +83,16 @@ impl LimitsModel {
         rig.write(&mut pack);
         self.write(&mut pack);
         pack.finish(provenance)
+    }
+
+    /// A style pack: everything that `base` holds, and these limits instead of its own if it has some. Its joints must be these.
+    pub fn pack_with(&self, base: &Pack, rig: &Rig, provenance: &Provenance) -> Result<Vec<u8>, LoadError> {
+        let metadata = base.metadata();
+        let mut pack = PackWriter::new(Kind::Style, metadata.name, metadata.frame_rate);
+        rig.write(&mut pack);
+        pack.copy_models(base)?;
+        self.write(&mut pack);
+        Ok(pack.finish(provenance))
     }
 
     /// The tables as the device reads them, for a limiter without a pack.

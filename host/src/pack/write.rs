@@ -1,8 +1,10 @@
 //! From models to bytes.
 
+use kinesic::Pack;
 use kinesic::kernel::{ROWS, TILE};
 use kinesic::model::{
-    ALIGNMENT, HEADER_LEN, JointMeta, Kind, List, MAGIC, Metadata, ModelMeta, TensorMeta, TensorType, VERSION, checksum,
+    ALIGNMENT, HEADER_LEN, JointMeta, Kind, List, LoadError, MAGIC, Metadata, ModelMeta, TensorMeta, TensorType,
+    VERSION, checksum,
 };
 use serde::Serialize;
 
@@ -86,6 +88,17 @@ impl PackWriter {
     pub fn copy(&mut self, tensor: &TensorMeta, bytes: &[u8]) {
         let [_, columns] = tensor.shape;
         self.tensor(tensor.name, tensor.kind, columns as usize, tensor.len().unwrap_or(0), bytes);
+    }
+
+    /// Adds the models of another pack on the same skeleton, and their tensors; joint limits are left out, a pack has one table.
+    pub fn copy_models(&mut self, pack: &Pack) -> Result<(), LoadError> {
+        let metadata = pack.metadata();
+        metadata.models.iter().filter(|model| model.limits().is_none()).for_each(|model| self.model(&model));
+        let kept = |name: &str| !name.starts_with("skeleton/") && !name.starts_with("limit/");
+        for tensor in metadata.tensors.iter().filter(|tensor| kept(tensor.name)) {
+            self.copy(&tensor, pack.bytes(&tensor).ok_or(LoadError::Metadata)?);
+        }
+        Ok(())
     }
 
     /// Adds a row-major matrix in the tiled order of [`kinesic::kernel::Tiled`].

@@ -12,6 +12,7 @@ use super::features::{centred, columns, principal, segments, with_states};
 use super::identify;
 use super::model::{BankModel, TimingModel, TranslatorModel};
 use super::moments::{Base, Map, Moments, Shape, stack};
+use crate::reached::Reached;
 
 /// Deviation below which a joint counts as still, m.
 const STILL: f64 = 0.01;
@@ -143,8 +144,9 @@ impl<'a> Problem<'a> {
         FoldMoments { total, train, held }
     }
 
-    /// Cross-validated RMS joint distance of each candidate, m. Candidates that share their features share the work.
-    pub fn validate(&self, candidates: &[Candidate]) -> Vec<f64> {
+    /// Cross-validated RMS joint distance of each candidate, m. Candidates that share their features share the work. `name` tells
+    /// this validation from others of the same training.
+    pub fn validate(&self, candidates: &[Candidate], reached: &Reached, name: &str) -> Vec<f64> {
         let mut groups: Vec<(Option<usize>, Poles)> = Vec::new();
         for candidate in candidates {
             let group = (candidate.coordinates, candidate.poles);
@@ -167,17 +169,22 @@ impl<'a> Problem<'a> {
             .par_iter()
             .map(|(group, unit)| {
                 let (coordinates, poles) = groups[*group];
-                let (features, channels) = match unit {
-                    Unit::Body => (self.whole_body(coordinates.unwrap_or(0), poles).1, 0..self.channels),
-                    Unit::Joint(joint) => (self.per_joint(*joint, poles).2, 3 * joint..3 * joint + 3),
+                let members =
+                    || candidates.iter().enumerate().filter(|(_, c)| (c.coordinates, c.poles) == groups[*group]);
+                let work = || {
+                    let (features, channels) = match unit {
+                        Unit::Body => (self.whole_body(coordinates.unwrap_or(0), poles).1, 0..self.channels),
+                        Unit::Joint(joint) => (self.per_joint(*joint, poles).2, 3 * joint..3 * joint + 3),
+                    };
+                    let folds = self.moments(&features, channels.clone());
+                    let states =
+                        features.first().map_or(0, Mat::ncols) - coordinates.map_or(3, |c| c.min(self.basis.ncols()));
+                    // The root's horizontal rows hold travel, which is no position.
+                    let weight = |c: usize| if channels.start == 0 && (c == 0 || c == 2) { 0.0 } else { 1.0 };
+                    members().map(|(_, candidate)| folds.error(candidate, states, &weight)).collect()
                 };
-                let folds = self.moments(&features, channels.clone());
-                let states =
-                    features.first().map_or(0, Mat::ncols) - coordinates.map_or(3, |c| c.min(self.basis.ncols()));
-                let members = candidates.iter().enumerate().filter(|(_, c)| (c.coordinates, c.poles) == groups[*group]);
-                // The root's horizontal rows hold travel, which is no position.
-                let weight = |c: usize| if channels.start == 0 && (c == 0 || c == 2) { 0.0 } else { 1.0 };
-                members.map(|(i, candidate)| (i, folds.error(candidate, states, &weight))).collect()
+                let errors = reached.always(&format!("{name} {coordinates:?} {poles:?} {unit:?}"), work);
+                members().map(|(i, _)| i).zip(errors).collect()
             })
             .collect();
         for (index, error) in partial.into_iter().flatten() {
@@ -369,6 +376,7 @@ impl<'a> Problem<'a> {
     }
 }
 
+#[derive(Debug)]
 enum Unit {
     Body,
     Joint(usize),

@@ -35,4 +35,6 @@ pub use model::{BankModel, TimingModel, TranslatorModel};
 pub use moments::Base;
 pub use play::{HostTranslator, Settings, TIMING_STRENGTH, Timing, play};
 pub use strength::plausible;
-pub use train::{DEFAULT_ORDER, FormChoice, Stage, TrainError, TrainOptions, TrainPair, Trained, partners, train};
+pub use train::{
+    DEFAULT_ORDER, FormChoice, Stage, TrainError, TrainOptions, TrainPair, Trained, partners, train, train_kept,
+};

@@ -15,6 +15,7 @@ use super::moments::Base;
 use super::simulate::simulate;
 use crate::align::{AlignError, Ends, Series, aligned_distance, aligned_path};
 use crate::pack::Baselines;
+use crate::reached::Reached;
 use crate::rig::{Locals, Rig};
 
 /// Which form to train.
@@ -135,29 +136,53 @@ pub fn train(
     options: &TrainOptions,
     progress: &(dyn Fn(Stage) + Sync),
 ) -> Result<Trained, TrainError> {
+    train_kept(rig, pairs, style, fps, options, progress, &Reached::nothing())
+}
+
+/// The same; what is compared (alignments, candidates, forms) is kept in `reached`, and taken from there where it is known.
+pub fn train_kept(
+    rig: &Rig,
+    pairs: &[TrainPair],
+    style: &str,
+    fps: f64,
+    options: &TrainOptions,
+    progress: &(dyn Fn(Stage) + Sync),
+    reached: &Reached,
+) -> Result<Trained, TrainError> {
     if pairs.is_empty() {
         return Err(TrainError::NoPairs);
     }
     progress(Stage::Align);
     let partners = partners(rig);
     let ways = options.alignment.map_or_else(|| Alignment::ALL.to_vec(), |way| vec![way]);
-    let tried: Vec<(Alignment, f64, Vec<Sequence>)> = ways
+    let align = |way| aligned(way, rig, pairs, &partners, fps);
+    let tried: Vec<(Alignment, f64, Option<Vec<Sequence>>)> = ways
         .par_iter()
-        .map(|way| aligned(*way, rig, pairs, &partners, fps).map(|(error, sequences)| (*way, error, sequences)))
-        .collect::<Result<_, _>>()?;
+        .map(|way| {
+            let mut made = None;
+            let error = reached.number(&format!("align {way:?}"), || {
+                let (error, sequences) = align(*way)?;
+                made = Some(sequences);
+                Ok(error)
+            })?;
+            Ok((*way, error, made))
+        })
+        .collect::<Result<_, TrainError>>()?;
     let alignments = tried.iter().map(|(way, error, _)| (*way, 100.0 * error)).collect();
     let best = tried.into_iter().min_by(|a, b| a.1.total_cmp(&b.1));
     let (alignment, _, sequences) = best.ok_or(TrainError::NoPairs)?;
+    // An earlier run keeps errors, not sequences.
+    let sequences = sequences.map_or_else(|| Ok(align(alignment)?.1), Ok)?;
 
     progress(Stage::Validate);
     let copies: Vec<Sequence> = sequences.iter().map(|s| s.mirrored(&partners)).collect();
     let mirrored = options.mirror.unwrap_or_else(|| {
-        let error = |copies| Problem::new(&sequences, copies, fps).validate(&[QUICK])[0];
-        error(&copies) < error(&[])
+        let error = |copies, name| Problem::new(&sequences, copies, fps).validate(&[QUICK], reached, name)[0];
+        error(&copies, "mirrored") < error(&[], "not mirrored")
     });
     let problem = Problem::new(&sequences, if mirrored { &copies } else { &[] }, fps);
     let grid = grid(options);
-    let errors = problem.validate(&grid);
+    let errors = problem.validate(&grid, reached, "grid");
     let best_of = |keep: &dyn Fn(&Candidate) -> bool| {
         let kept = grid.iter().zip(&errors).filter(|(candidate, error)| keep(candidate) && error.is_finite());
         kept.min_by(|a, b| a.1.total_cmp(b.1)).map(|(candidate, _)| *candidate)
@@ -168,13 +193,15 @@ pub fn train(
     let ends = if alignment == Alignment::InStep { OPEN } else { Ends::Closed };
     let mut forms = Vec::new();
     for candidate in per_joint.into_iter().chain(whole_body) {
-        forms.push((candidate, 100.0 * held_out_error(&problem, &candidate, pairs, ends)?));
+        let error = || held_out_error(&problem, &candidate, pairs, ends);
+        forms.push((candidate, 100.0 * reached.number(&format!("form {candidate:?}"), error)?));
     }
     // The plain affine map, on the plain time warp, must be beaten clearly to be replaced.
     let plain = if alignment == Alignment::InStep { sequences.clone() } else { plain_sequences(pairs)? };
     let plain = Problem::new(&plain, &[], fps);
     if options.form == FormChoice::Auto {
-        forms.push((AFFINE, 100.0 * held_out_error(&plain, &AFFINE, pairs, ends)?));
+        let error = || held_out_error(&plain, &AFFINE, pairs, ends);
+        forms.push((AFFINE, 100.0 * reached.number("affine", error)?));
     }
     let best = *forms.iter().min_by(|a, b| a.1.total_cmp(&b.1)).ok_or(TrainError::Undetermined)?;
     let simple = forms.iter().find(|(candidate, error)| *candidate == AFFINE && best.1 > (1.0 - MARGIN) * error);

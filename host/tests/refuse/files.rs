@@ -172,6 +172,14 @@ pub fn make(folder: &Path) {
     map("pairs-column.tsv", "a\tb\nwalk.bvh\tweary.bvh\n");
     map("pairs-ragged.tsv", "neutral\tstyled\nwalk.bvh\n");
     map("list.tsv", "file\tlabel\nwalk.bvh\tplain\n");
+    let robot = "<robot name=\"r\"><link name=\"a\"/><link name=\"b\"/><joint name=\"neck\" type=\"revolute\"><parent link=\"a\"/>\
+                 <child link=\"b\"/><limit lower=\"-1\" upper=\"1\" velocity=\"3\"/></joint></robot>";
+    map("robot.urdf", robot);
+    map("robot-cut.urdf", &robot[..120]);
+    map("robot-loop.urdf", &swap(robot, "<child link=\"b\"", "<child link=\"a\""));
+    map("robot-free.urdf", &swap(robot, "<limit lower=\"-1\" upper=\"1\" velocity=\"3\"/>", ""));
+    write("robot-binary.urdf", &[0xff, 0xfe, 0, 1]);
+    map("robot-map.toml", "acceleration = 20\n[joints]\nhead = \"neck\"\n");
     std::fs::create_dir(folder.join("hollow")).unwrap();
     std::fs::create_dir(folder.join("taken.bvh")).unwrap();
     std::fs::create_dir(folder.join("taken.kin")).unwrap();

@@ -5,6 +5,7 @@ use std::path::Path;
 use kinesic_host::clip::{Clip, Unit, WriteOptions};
 use kinesic_host::components::{self, Optimiser};
 use kinesic_host::gait::{Manner, walk};
+use kinesic_host::limit::{JointLimit, LimitsModel};
 use kinesic_host::mechanics::{self, NamedClip, Split};
 use kinesic_host::pack::Provenance;
 use kinesic_host::translate::FormChoice;
@@ -26,6 +27,9 @@ pub fn write(corpus: &Path) {
     }
     for (name, text) in recordings() {
         put("csv", name, text.as_bytes());
+    }
+    for (name, text) in robots() {
+        put("urdf", name, text.as_bytes());
     }
     let maps = [
         (
@@ -68,7 +72,45 @@ fn packs() -> Vec<(&'static str, Vec<u8>)> {
     packs.push(("components.kin", trained.model.pack(&rig, &origin)));
     let (model, rig) = kinesic_host::emotion::made::sized(1, [3, 2, 2]);
     packs.push(("emotion.kin", model.pack(&rig, &origin)));
+    let mut limits = LimitsModel::free("seed", 60.0, rig.joints(), 6.0, 60.0);
+    let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
+    limits.joints[1] = JointLimit::hinge(x, [-0.1, 2.3], 9.0, 110.0);
+    limits.joints[2] = JointLimit::chain([x, y, z], [-1.6; 3], [1.3; 3], 7.0, 90.0);
+    limits.joints[3] = JointLimit::ball([y, z, x], [-0.7; 3], [0.9; 3], 5.0, 60.0);
+    packs.push(("limits.kin", limits.pack(&rig, &origin)));
     packs
+}
+
+/// An arm, the same with a map behind it, and one that turns, follows and slides.
+fn robots() -> Vec<(&'static str, String)> {
+    let joint = |name: &str, kind: &str, [from, to]: [&str; 2], rest: &str| {
+        format!(
+            "<link name='{to}'/><joint name='{name}' type='{kind}'><parent link='{from}'/><child link='{to}'/>{rest}</joint>"
+        )
+    };
+    let limit = "<limit lower='-1' upper='1.5' velocity='7' effort='2'/>";
+    let hinge = |axis: &str| format!("<origin xyz='0 0 -0.2' rpy='0 0 0'/><axis xyz='{axis}'/>{limit}");
+    let arm = [
+        "<robot name='arm'><link name='base'/>".to_owned(),
+        joint("pitch", "revolute", ["base", "a"], &hinge("0 1 0")),
+        joint("roll", "revolute", ["a", "b"], &hinge("1 0 0")),
+        joint("yaw", "revolute", ["b", "c"], &hinge("0 0 1")),
+        joint("elbow", "revolute", ["c", "d"], &hinge("0 1 0")),
+        "</robot>".to_owned(),
+    ]
+    .concat();
+    let map = "acceleration = 3\nup = \"z\"\nunmapped = \"fixed\"\n[joints]\nl_elbow = { urdf = \"elbow\", lower = -0.5, bone = [0, 0, 1] }\n\
+               l_shoulder = { kind = \"ball\", urdf = [\"pitch\", \"roll\"], rest = [0.1, 0], velocity = 2 }\n";
+    let odd = [
+        "<?xml version='1.0'?><robot name='odd'><link name='base'/>".to_owned(),
+        joint("elbow", "continuous", ["base", "a"], "<axis xyz='0 0 2'/><limit velocity='3'/>"),
+        joint("grip", "revolute", ["a", "b"], &format!("{limit}<mimic joint='elbow' multiplier='-0.2' offset='0.3'/>")),
+        joint("slide", "prismatic", ["a", "c"], &hinge("0 1 0")),
+        "</robot>".to_owned(),
+    ]
+    .concat();
+    let alone = "acceleration = 3\n[joints]\nl_elbow = \"elbow\"\n";
+    vec![("arm.urdf", arm.clone()), ("mapped.urdf", format!("{arm}\0{map}")), ("odd.urdf", format!("{odd}\0{alone}"))]
 }
 
 /// The writer's dialect, another unit, and dialects that the writer does not speak.

@@ -4,14 +4,16 @@ use std::path::{Path, PathBuf};
 
 use kinesic_host::components::{
     FRAME_RATE, Optimiser, RECORDED, Report, Sparsity, TradeOff, TrainOptions, Trained, Weights, evaluate, trade_off,
-    train,
+    train_kept,
 };
-use kinesic_host::pack::{Metric, PackFile, Provenance};
+use kinesic_host::pack::{InputFile, Metric, PackFile, Provenance};
 use kinesic_host::prepare::{Source, fingerprint};
+use kinesic_host::reached::Reached;
 use miette::{IntoDiagnostic, WrapErr};
 use serde::Serialize;
 
 use super::report::{ReportArgs, components::page};
+use super::resume::ResumeArgs;
 use crate::commands::clips::Reading;
 use crate::commands::output::{check_output, command_line, print_json, spinner, write_whole};
 
@@ -79,6 +81,8 @@ pub struct Args {
     report: ReportArgs,
     #[command(flatten)]
     reading: Reading,
+    #[command(flatten)]
+    resume: ResumeArgs,
 }
 
 /// Number of components as given.
@@ -111,17 +115,23 @@ pub fn run(args: &Args) -> miette::Result<()> {
     bar.set_message("factorising and learning");
     let options = args.options();
     let name = args.name.clone().unwrap_or_else(|| file_stem(&args.out));
-    let trained = train(&rig, &content, &style, &name, &options).into_diagnostic()?;
-    let curve = if args.curve { trade_off(&rig, &trained, &options, &CURVE) } else { Vec::new() };
+    let prints: Vec<InputFile> = [&args.content, &args.style]
+        .into_iter()
+        .map(|path| fingerprint(path).into_diagnostic().wrap_err_with(|| path.display().to_string()))
+        .collect::<Result<_, _>>()?;
+    // The same options and the same clips, read in the same way: the same training.
+    let deciding = [format!("components {options:?} {}", args.curve), format!("{prints:?}"), args.reading.deciding()?];
+    let mut checkpoint = args.resume.checkpoint(&args.out, &deciding)?;
+    let reached = Reached::new(&mut checkpoint).into_diagnostic()?;
+    let trained = train_kept(&rig, &content, &style, &name, &options, &reached).into_diagnostic()?;
+    let curve = if args.curve { trade_off(&rig, &trained, &options, &CURVE, &reached) } else { Vec::new() };
+    drop(reached);
 
     let mut provenance = Provenance {
         tool: format!("kinesic {}", env!("CARGO_PKG_VERSION")),
         command: command_line(),
         seed: args.seed,
-        inputs: [&args.content, &args.style]
-            .into_iter()
-            .map(|path| fingerprint(path).into_diagnostic().wrap_err_with(|| path.display().to_string()))
-            .collect::<Result<_, _>>()?,
+        inputs: prints,
         metrics: recorded(&trained),
         notes: vec![trained.choice.reason.clone()],
         ..Provenance::default()
@@ -133,6 +143,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     write_whole(&args.out, &bytes)?;
     let file = PackFile::from_bytes(&bytes);
     args.report.write(&args.out, &file, page(&trained, &report, &curve, [&content, &style], &rig, &file)?)?;
+    checkpoint.finish();
     bar.finish_and_clear();
     let summary = Summary {
         pack: args.out.display().to_string(),

@@ -47,6 +47,9 @@ pub struct Args {
     /// Seed of all random choices
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// Accepted as with the other engines: a face is trained within seconds and keeps no checkpoint, so it begins anew
+    #[arg(long)]
+    resume: bool,
     /// Print the results as one JSON object
     #[arg(long)]
     json: bool,
@@ -65,6 +68,9 @@ fn share(text: &str) -> Result<f64, String> {
 pub fn run(args: &Args) -> miette::Result<()> {
     check_output(&args.out, "kin")?;
     args.report.check(&args.out)?;
+    if args.resume {
+        eprintln!("{}: faces keep no checkpoint, training from the beginning", args.out.display());
+    }
     let bar = spinner();
     bar.set_message("reading the landmarks");
     let faces = landmarks::read(&args.landmarks, Some(&args.attribute)).into_diagnostic()?;

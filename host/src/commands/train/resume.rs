@@ -13,7 +13,7 @@ pub struct ResumeArgs {
     /// pack becomes the same, byte for byte
     #[arg(long)]
     resume: bool,
-    /// Seconds between checkpoints; 0 = after every epoch
+    /// Seconds between checkpoints; 0 = after every epoch or step
     #[arg(long, value_name = "SECONDS", default_value_t = 10.0, allow_negative_numbers = true)]
     checkpoint_every: f64,
 }

@@ -4,16 +4,18 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 use kinesic_host::clip::Clip;
-use kinesic_host::pack::{Metric, PackFile, Provenance};
+use kinesic_host::pack::{InputFile, Metric, PackFile, Provenance};
 use kinesic_host::prepare::{Source, common_rate, fingerprint};
+use kinesic_host::reached::Reached;
 use kinesic_host::translate::{
     AFFINE, Alignment, Base, Candidate, FormChoice, NamedPair, Poles, Report, Stage, TrainOptions, TrainPair, Trained,
-    evaluate, plausible, train,
+    evaluate, plausible, train_kept,
 };
 use miette::{IntoDiagnostic, WrapErr};
 use serde::Serialize;
 
 use super::report::{ReportArgs, translate::page};
+use super::resume::ResumeArgs;
 use crate::commands::clips::{Pairs, Reading};
 use crate::commands::output::{check_output, command_line, print_json, spinner, write_whole};
 
@@ -61,6 +63,8 @@ pub struct Args {
     reading: Reading,
     #[command(flatten)]
     report: ReportArgs,
+    #[command(flatten)]
+    resume: ResumeArgs,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -124,14 +128,25 @@ pub fn run(args: &Args) -> miette::Result<()> {
         clips.push((neutral, styled));
     }
     let style = args.style.clone().unwrap_or_else(|| file_stem(&args.out));
-    let mut trained = train(&rig, &pairs, &style, fps, &args.options(), &|stage| {
+    let prints: Vec<InputFile> = paths
+        .iter()
+        .flat_map(|(a, b)| [a, b])
+        .map(|path| fingerprint(path).into_diagnostic().wrap_err_with(|| path.display().to_string()))
+        .collect::<Result<_, _>>()?;
+    // The same options, the same clips in the same order, read in the same way: the same training.
+    let deciding = [format!("translate {:?} {fps}", args.options()), format!("{prints:?}"), args.reading.deciding()?];
+    let mut checkpoint = args.resume.checkpoint(&args.out, &deciding)?;
+    let reached = Reached::new(&mut checkpoint).into_diagnostic()?;
+    let progress = |stage| {
         bar.set_message(match stage {
             Stage::Align => "aligning the clips",
             Stage::Validate => "comparing forms, orders and penalties",
             Stage::Fit => "fitting",
         });
-    })
-    .into_diagnostic()?;
+    };
+    let trained = train_kept(&rig, &pairs, &style, fps, &args.options(), &progress, &reached);
+    let mut trained = trained.into_diagnostic()?;
+    drop(reached);
 
     let named: Vec<NamedPair> = pairs
         .iter()
@@ -145,11 +160,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
         tool: format!("kinesic {}", env!("CARGO_PKG_VERSION")),
         command: command_line(),
         seed: args.seed,
-        inputs: paths
-            .iter()
-            .flat_map(|(a, b)| [a, b])
-            .map(|path| fingerprint(path).into_diagnostic().wrap_err_with(|| path.display().to_string()))
-            .collect::<Result<_, _>>()?,
+        inputs: prints,
         metrics: Vec::new(),
         notes: notes(&trained),
         baselines: trained.baselines.clone(),
@@ -166,6 +177,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     write_whole(&args.out, &bytes)?;
     let file = PackFile::from_bytes(&bytes);
     args.report.write(&args.out, &file, page(&trained, &report, &named[0], &rig, &file)?)?;
+    checkpoint.finish();
     bar.finish_and_clear();
     if args.json {
         print_json(&Summary::new(args, &trained, &report, bytes.len(), fps))

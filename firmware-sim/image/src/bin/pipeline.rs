@@ -1,0 +1,5 @@
+//! Body mechanics, translator, components, mix and limits, 31 joints.
+#![no_std]
+#![no_main]
+
+kinesic_image::image!(kinesic_image::workloads::pipeline::Whole, "pipeline.kin");

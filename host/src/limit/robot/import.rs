@@ -1,0 +1,382 @@
+//! A robot and its map as limits of a skeleton's joints.
+
+use std::f64::consts::{PI, TAU};
+
+use kinesic::limit::JointKind;
+use kinesic::model::LoadError;
+use nalgebra::{UnitQuaternion, Vector3};
+
+use super::stand::{rig_joint, world, zero};
+use super::{Entry, Motion, Robot, RobotError, RobotMap, UrdfJoint, kind_name};
+use crate::clip::Canonical;
+use crate::clip::map::nearest;
+use crate::limit::{JointLimit, LimitsModel};
+use crate::rig::Rig;
+
+/// Axes of a chain may be this far from a right angle (cosine; half a degree): a `rpy` of 1.57 is meant to be a quarter turn.
+const SQUARE: f64 = 1e-2;
+
+/// Rates that stand in where the map has none of its own.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Rates {
+    /// rad/s.
+    pub velocity: Option<f64>,
+    /// rad/s^2.
+    pub acceleration: Option<f64>,
+}
+
+/// Limits, and how they came about.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Import {
+    /// The limits of every joint of the rig.
+    pub model: LimitsModel,
+    /// Names of the robot's joints, one list a joint of the rig, in the order of its coordinates.
+    pub urdf: Vec<Vec<String>>,
+    /// What was assumed or changed, one sentence each.
+    pub notes: Vec<String>,
+}
+
+/// Limits of a rig's joints at `frame_rate` steps a second. `rates` go before the map's own defaults.
+pub fn import(
+    robot: &Robot,
+    map: &RobotMap,
+    rig: &Rig,
+    name: &str,
+    frame_rate: f64,
+    rates: Rates,
+) -> Result<Import, RobotError> {
+    let entries = entries(map, rig)?;
+    let joints = robot_joints(robot, rig, &entries)?;
+    let frames = robot.frames();
+    let turned = zero(robot, &frames, map, rig, &joints);
+    let to_world = world(map, rig);
+    let mut notes = Vec::new();
+    let acceleration = rates.acceleration.or(map.acceleration);
+    let velocity = rates.velocity.or(map.velocity);
+    let mut limits = Vec::new();
+    for (joint, entry) in entries.iter().enumerate() {
+        let bone = &rig.skeleton.joints[joint];
+        let parent = bone.parent.map_or_else(UnitQuaternion::identity, |parent| turned[parent]);
+        let neutral = parent.inverse() * turned[joint];
+        let limit = match entry {
+            Some(entry) if entry.kind != Some(JointKind::Free) => {
+                let axis =
+                    |at: &usize| turned[joint].inverse() * (to_world * (frames[*at].rotation * robot.joints[*at].axis));
+                let axes: Vec<Vector3<f64>> = joints[joint].iter().map(axis).collect();
+                let rows = rows(robot, &joints[joint], entry, velocity, acceleration, &mut notes)?;
+                Some(limit(entry, &axes, &rows, robot, &joints[joint], &mut notes)?)
+            }
+            _ => None,
+        };
+        limits.push((limit, neutral));
+    }
+    // A free joint without rates of its own is as fast as the fastest servo.
+    let fastest = limits.iter().filter_map(|(limit, _)| Some(limit.as_ref()?.velocity[0])).fold(0.0, f32::max);
+    let rate = velocity.map_or(fastest, |x| x as f32);
+    let change = |own: Option<&Vec<f64>>| {
+        own.map(|own| own[0])
+            .or(acceleration)
+            .map(|x| x as f32)
+            .ok_or_else(|| no_acceleration("joints without an entry"))
+    };
+    let joints_of = |joint: usize| joints[joint].iter().map(|at| robot.joints[*at].name.clone()).collect::<Vec<_>>();
+    let mut rows = Vec::new();
+    for (joint, (limit, neutral)) in limits.into_iter().enumerate() {
+        let entry = entries[joint];
+        let limit = match limit {
+            Some(limit) => limit,
+            None if map.others_fixed && entry.is_none() && joint > 0 => {
+                JointLimit::hinge([1.0, 0.0, 0.0], [0.0; 2], rate, change(None)?)
+            }
+            None => {
+                let own = entry.and_then(|entry| entry.velocity.as_ref());
+                JointLimit::free(
+                    own.map_or(rate, |own| own[0] as f32),
+                    change(entry.and_then(|e| e.acceleration.as_ref()))?,
+                )
+            }
+        };
+        let q = neutral.coords.map(|x| x as f32);
+        rows.push(JointLimit { neutral: [q.x, q.y, q.z, q.w], ..limit });
+    }
+    let model = LimitsModel { name: name.to_owned(), frame_rate, meta: map.meta, joints: rows };
+    model.check().map_err(|error| refused(&error, rig))?;
+    Ok(Import { model, urdf: (0..entries.len()).map(joints_of).collect(), notes })
+}
+
+/// The map's entry of each joint of the rig.
+fn entries<'m>(map: &'m RobotMap, rig: &Rig) -> Result<Vec<Option<&'m Entry>>, RobotError> {
+    let mut found: Vec<Option<&Entry>> = vec![None; rig.joints()];
+    for entry in &map.entries {
+        let place = format!("[joints] {}", entry.joint);
+        let names: Vec<&str> = rig.skeleton.joints.iter().map(|joint| joint.name.as_str()).collect();
+        let joint = rig_joint(rig, &entry.joint).ok_or_else(|| {
+            let canonical = Canonical::ALL.map(Canonical::name);
+            let near = nearest(&entry.joint, names.iter().copied().chain(canonical));
+            let near = near.map_or(String::new(), |near| format!("; did you mean '{near}'?"));
+            let help = format!(
+                "its joints are: {}; or canonical names that it has: {}",
+                names.join(", "),
+                canonical.join(", ")
+            );
+            RobotError::new(&place, format!("the skeleton has no joint of this name{near}"), help)
+        })?;
+        if let Some(other) = found[joint] {
+            let what = format!("the skeleton's joint '{}' has the entry '{}' already", names[joint], other.joint);
+            return Err(RobotError::new(place, what, "keep one of the two"));
+        }
+        if entry.urdf.is_empty() && entry.kind != Some(JointKind::Free) {
+            let help = "leave the entry out, or write  { kind = \"free\" }";
+            return Err(RobotError::new(place, "found no robot joint, expected one to three", help));
+        }
+        found[joint] = Some(entry);
+    }
+    Ok(found)
+}
+
+/// Indices of the robot's joints of each joint of the rig, checked: each a hinge of its own, used once, from the trunk outwards.
+fn robot_joints(robot: &Robot, rig: &Rig, entries: &[Option<&Entry>]) -> Result<Vec<Vec<usize>>, RobotError> {
+    let mut all: Vec<Vec<usize>> = Vec::new();
+    let mut used: Vec<Option<&str>> = vec![None; robot.joints.len()];
+    for (joint, entry) in entries.iter().enumerate() {
+        let mut chosen = Vec::new();
+        for name in entry.iter().flat_map(|entry| &entry.urdf) {
+            let place = format!("[joints] {}", entry.map_or("", |entry| &entry.joint));
+            let refuse = |what: String, help: String| Err(RobotError::new(&place, what, help));
+            let names = || robot.joints.iter().map(|joint| joint.name.as_str());
+            let Some(at) = robot.find(name) else {
+                let near = nearest(name, names()).map_or(String::new(), |near| format!("; did you mean '{near}'?"));
+                let moving = robot.joints.iter().filter(|j| matches!(j.motion, Motion::Revolute | Motion::Continuous));
+                let moving: Vec<&str> = moving.map(|joint| joint.name.as_str()).collect();
+                return refuse(
+                    format!("the robot has no joint '{name}'{near}"),
+                    format!("its hinges are: {}", moving.join(", ")),
+                );
+            };
+            let found = &robot.joints[at];
+            if let Motion::Fixed | Motion::Other(_) = found.motion {
+                let motion = if let Motion::Other(motion) = found.motion { motion } else { "fixed" };
+                let what = format!("'{name}' (line {}) is {motion}, expected revolute or continuous", found.line);
+                return refuse(what, "leave it out of the map: only hinges have angles".to_owned());
+            }
+            if let Some(mimic) = &found.mimic {
+                let what =
+                    format!("'{name}' (line {}) follows '{}' and has no angle of its own", found.line, mimic.joint);
+                return refuse(
+                    what,
+                    format!("map '{}' instead; its limits are kept for its followers too", mimic.joint),
+                );
+            }
+            if let Some(other) = used[at].replace(entry.map_or("", |entry| &entry.joint)) {
+                return refuse(
+                    format!("'{name}' belongs to '{other}' already"),
+                    "name every robot joint once".to_owned(),
+                );
+            }
+            // The joints that must carry this one: those named before it, and those of the skeleton joints further in.
+            let before = std::iter::successors(rig.skeleton.joints[joint].parent, |at| rig.skeleton.joints[*at].parent);
+            let inner = chosen.last().copied().or_else(|| before.flat_map(|at| all[at].iter().rev()).copied().next());
+            if let Some(inner) = inner.filter(|inner| !robot.chain(at).skip(1).any(|at| at == *inner)) {
+                let what = format!("'{name}' is not carried by '{}', which comes before it", robot.joints[inner].name);
+                return refuse(
+                    what,
+                    "list robot joints from the trunk outwards, each on the limb of its skeleton joint".to_owned(),
+                );
+            }
+            chosen.push(at);
+        }
+        all.push(chosen);
+    }
+    Ok(all)
+}
+
+/// Bounds and rates of one coordinate.
+#[derive(Clone, Copy, Debug)]
+struct Row {
+    lower: f64,
+    upper: f64,
+    velocity: f64,
+    acceleration: f64,
+    rest: Option<f64>,
+}
+
+fn no_acceleration(place: &str) -> RobotError {
+    let help =
+        "a URDF has none: give --acceleration 20, or acceleration = 20.0 in the map, from the servo's torque and load";
+    RobotError::new(place, "found no acceleration, expected rad/s^2", help)
+}
+
+/// What each robot joint of an entry may do, its followers' limits included.
+fn rows(
+    robot: &Robot,
+    joints: &[usize],
+    entry: &Entry,
+    velocity: Option<f64>,
+    acceleration: Option<f64>,
+    notes: &mut Vec<String>,
+) -> Result<Vec<Row>, RobotError> {
+    let mut rows = Vec::new();
+    for (index, at) in joints.iter().enumerate() {
+        let joint = &robot.joints[*at];
+        let place = format!("joint '{}' (line {})", joint.name, joint.line);
+        let own = |list: &Option<Vec<f64>>| list.as_ref().map(|list| list[index]);
+        let (mut lower, mut upper) = bounds(joint, own(&entry.lower), own(&entry.upper), &place, notes)?;
+        let mut speed =
+            own(&entry.velocity).or(joint.velocity.filter(|speed| *speed > 0.0)).or(velocity).ok_or_else(|| {
+                let found = joint.velocity.map_or("no velocity".to_owned(), |speed| format!("velocity=\"{speed}\""));
+                let help = format!("write velocity = 6.0 into the map's entry '{}', or give --velocity 6", entry.joint);
+                RobotError::new(&place, format!("found {found}, expected rad/s above 0"), help)
+            })?;
+        for follower in robot.joints.iter() {
+            let Some(mimic) = follower.mimic.as_ref().filter(|mimic| mimic.joint == joint.name) else { continue };
+            if mimic.multiplier == 0.0 {
+                continue;
+            }
+            let ends = [follower.lower, follower.upper].map(|end| Some((end? - mimic.offset) / mimic.multiplier));
+            let [low, high] = if mimic.multiplier < 0.0 { [ends[1], ends[0]] } else { ends };
+            let tighter = (lower.max(low.unwrap_or(lower)), upper.min(high.unwrap_or(upper)));
+            let slower =
+                follower.velocity.filter(|v| *v > 0.0).map_or(speed, |v| speed.min(v / mimic.multiplier.abs()));
+            if tighter != (lower, upper) || slower != speed {
+                notes.push(format!("{}: tighter, for '{}' that follows it", joint.name, follower.name));
+            }
+            ((lower, upper), speed) = (tighter, slower);
+        }
+        if lower > upper {
+            let what = format!("found lower {lower} above upper {upper}, expected the other way round");
+            return Err(RobotError::new(place, what, "correct <limit>, or write lower and upper into the map's entry"));
+        }
+        rows.push(Row {
+            lower,
+            upper,
+            velocity: speed,
+            acceleration: own(&entry.acceleration).or(acceleration).ok_or_else(|| no_acceleration(&place))?,
+            rest: own(&entry.rest),
+        });
+    }
+    Ok(rows)
+}
+
+/// A joint's bounds, no more than a turn apart.
+fn bounds(
+    joint: &UrdfJoint,
+    lower: Option<f64>,
+    upper: Option<f64>,
+    place: &str,
+    notes: &mut Vec<String>,
+) -> Result<(f64, f64), RobotError> {
+    if joint.motion == Motion::Continuous && lower.is_none() && upper.is_none() {
+        notes.push(format!("{}: continuous, kept within half a turn to either side", joint.name));
+        return Ok((-PI, PI));
+    }
+    let (low, high) = (lower.or(joint.lower), upper.or(joint.upper));
+    if low.is_none() && high.is_none() {
+        let help = "a revolute joint needs <limit lower=\"...\" upper=\"...\"/>; or write lower and upper, rad, into the map's entry";
+        return Err(RobotError::new(place, "found no bounds, expected lower and upper", help));
+    }
+    // What a <limit> leaves out is 0.
+    let (low, high) = (low.unwrap_or(0.0), high.unwrap_or(0.0));
+    if low.abs().max(high.abs()) > 4.0 * PI {
+        let what = format!("found bounds {low} and {high}, expected radians");
+        return Err(RobotError::new(place, what, "these look like degrees: a half turn is 3.1416"));
+    }
+    if high - low <= TAU {
+        return Ok((low, high));
+    }
+    let cut_low = low.max(-PI);
+    let cut = (cut_low.min(high - TAU).max(low), (cut_low + TAU).min(high));
+    notes.push(format!(
+        "{}: {low:.3} .. {high:.3} is more than a turn, kept to {:.3} .. {:.3}",
+        joint.name, cut.0, cut.1
+    ));
+    Ok(cut)
+}
+
+/// The limit of a skeleton joint that one to three robot joints turn.
+fn limit(
+    entry: &Entry,
+    axes: &[Vector3<f64>],
+    rows: &[Row],
+    robot: &Robot,
+    joints: &[usize],
+    notes: &mut Vec<String>,
+) -> Result<JointLimit, RobotError> {
+    let place = format!("[joints] {}", entry.joint);
+    let kind = entry.kind.unwrap_or(if axes.len() == 1 { JointKind::Hinge } else { JointKind::Chain });
+    let fits = match kind {
+        JointKind::Hinge => axes.len() == 1,
+        _ => (2..=3).contains(&axes.len()),
+    };
+    if !fits {
+        let (kind, expected) = (kind_name(kind), if kind == JointKind::Hinge { "one" } else { "two or three" });
+        let what = format!("found {} robot joints for the kind {kind}, expected {expected}", axes.len());
+        let help =
+            "one is a hinge, two or three at right angles are a chain; give further ones to a neighbouring joint";
+        return Err(RobotError::new(place, what, help));
+    }
+    let mut square: Vec<Vector3<f64>> = Vec::new();
+    for (index, axis) in axes.iter().enumerate() {
+        let mut straight = *axis;
+        for (before, other) in square.iter().enumerate() {
+            let cosine = axis.dot(other);
+            if cosine.abs() > SQUARE {
+                let name = |index: usize| &robot.joints[joints[index]].name;
+                let angle = cosine.clamp(-1.0, 1.0).acos().to_degrees();
+                let what =
+                    format!("'{}' and '{}' are {angle:.1} degrees apart, expected 90", name(before), name(index));
+                let help = "hinges of one joint stand at right angles: give one of them to a neighbouring joint of the skeleton";
+                return Err(RobotError::new(place, what, help));
+            }
+            straight -= other * straight.dot(other);
+        }
+        let straight = straight.normalize();
+        let off = axis.dot(&straight).clamp(-1.0, 1.0).acos().to_degrees();
+        if off > 0.01 {
+            notes.push(format!(
+                "{}: axis turned by {off:.2} degrees to a right angle",
+                robot.joints[joints[index]].name
+            ));
+        }
+        square.push(straight);
+    }
+    if let [a, b] = square[..] {
+        square.push(a.cross(&b));
+    }
+    let row = |index: usize| rows.get(index).copied().unwrap_or(Row { lower: 0.0, upper: 0.0, rest: None, ..rows[0] });
+    let three = |of: &dyn Fn(Row) -> f32| std::array::from_fn(|index| of(row(index)));
+    let axis = |index: usize| square.get(index).map_or([0.0; 3], |axis| axis.map(|x| x as f32).into());
+    let limit = JointLimit {
+        kind,
+        axes: std::array::from_fn(axis),
+        velocity: three(&|row| row.velocity as f32),
+        acceleration: three(&|row| row.acceleration as f32),
+        ..JointLimit::free(1.0, 1.0)
+    };
+    let (lower, mut upper) = (three(&|row| row.lower as f32), three(&|row| row.upper as f32));
+    // A whole turn must not become more by rounding.
+    for (upper, lower) in upper.iter_mut().zip(lower) {
+        while *upper - lower > std::f32::consts::TAU {
+            *upper = upper.next_down();
+        }
+    }
+    let mut limit = limit.within(lower, upper);
+    for (rest, index) in limit.rest.iter_mut().zip(0..) {
+        if let Some(given) = row(index).rest {
+            *rest = given as f32;
+        }
+    }
+    Ok(limit)
+}
+
+/// The device's refusal, with the joint's name.
+fn refused(error: &LoadError, rig: &Rig) -> RobotError {
+    let help = "the range must hold the rest angle; velocity / rate and acceleration / rate^2 must be above 1e-6";
+    match error {
+        LoadError::Value { tensor, index } => {
+            let joint = rig.skeleton.joints.get(*index).map_or("", |joint| &joint.name);
+            let column = tensor.trim_start_matches("limit/");
+            RobotError::new(format!("joint '{joint}'"), format!("its {column} is not what a limiter takes"), help)
+        }
+        other => RobotError::new("the table", other.to_string(), "check frame rate, root rates and times of the map"),
+    }
+}

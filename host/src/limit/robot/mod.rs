@@ -1,0 +1,38 @@
+//! Limits from a robot's URDF: which of its joints are which joint of the skeleton says a map.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `urdf` | [`Robot`]: the joints of a URDF, as a tree |
+//! | `map` | [`RobotMap`]: robot joints of each skeleton joint, and what a URDF does not say |
+//! | `stand` | how the skeleton stands when all of the robot's angles are zero |
+//! | `import` | both together: [`import()`] |
+//!
+//! # The geometry
+//!
+//! A robot joint turns everything beyond it about its axis `w`, root link's frame, all angles zero. Robot joints in a row turn it by
+//! `exp(w1 a1) exp(w2 a2) ...`. With `G` the rotation of the skeleton's joint in the pose in which the robot's angles are zero, and
+//! `P` its parent's, the joint's local rotation is `P^-1 exp(w1 a1) exp(w2 a2) G = (P^-1 G) exp(G^-1 w1 a1) exp(G^-1 w2 a2)`: a chain
+//! with `neutral = P^-1 G` and axes `G^-1 w`.
+
+mod error;
+mod import;
+mod map;
+mod stand;
+mod urdf;
+
+pub use error::RobotError;
+pub use import::{Import, Rates, import};
+pub use map::{Entry, RobotMap};
+pub use urdf::{Mimic, Motion, Robot, UrdfJoint};
+
+use kinesic::limit::JointKind;
+
+/// Name of a kind in maps and tables.
+pub fn kind_name(kind: JointKind) -> &'static str {
+    match kind {
+        JointKind::Free => "free",
+        JointKind::Hinge => "hinge",
+        JointKind::Chain => "chain",
+        JointKind::Ball => "ball",
+    }
+}

@@ -1,0 +1,264 @@
+//! The part of a URDF that limits need: joints, where they are, what they may do.
+//!
+//! <http://wiki.ros.org/urdf/XML/joint>: metres, radians; an origin is `Rz(yaw) Ry(pitch) Rx(roll)`, the axis is in the joint's frame and
+//! (1, 0, 0) unless given.
+
+use std::collections::HashMap;
+
+use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+use roxmltree::{Document, Node};
+
+use super::RobotError;
+
+/// How a joint moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Motion {
+    /// A hinge with bounds.
+    Revolute,
+    /// A hinge without.
+    Continuous,
+    /// Along an axis, in a plane or anyhow: no rotation that a limit could be made of.
+    Other(&'static str),
+    /// Not at all.
+    Fixed,
+}
+
+/// `multiplier x + offset` of another joint's angle `x`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mimic {
+    /// The joint that leads.
+    pub joint: String,
+    /// Radians a radian.
+    pub multiplier: f64,
+    /// Radians.
+    pub offset: f64,
+}
+
+/// One joint of a robot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UrdfJoint {
+    /// Name as the file spells it.
+    pub name: String,
+    /// Line of the file.
+    pub line: u32,
+    /// How it moves.
+    pub motion: Motion,
+    /// The joint that moves the link on which this one sits; none on the root link.
+    pub parent: Option<usize>,
+    /// Its frame in that joint's.
+    pub origin: Isometry3<f64>,
+    /// Axis in its frame, length one.
+    pub axis: Vector3<f64>,
+    /// Bounds, rad, where they are given; the tighter of `limit` and `safety_controller`.
+    pub lower: Option<f64>,
+    /// See `lower`.
+    pub upper: Option<f64>,
+    /// Largest speed, rad/s, where it is given.
+    pub velocity: Option<f64>,
+    /// Whose angle it follows.
+    pub mimic: Option<Mimic>,
+}
+
+/// A robot's tree of joints, in the file's order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Robot {
+    /// Name of the robot.
+    pub name: String,
+    /// Its joints.
+    pub joints: Vec<UrdfJoint>,
+}
+
+impl Robot {
+    /// Reads the text of a URDF.
+    pub fn parse(text: &str) -> Result<Self, RobotError> {
+        let document = Document::parse(text).map_err(|error| {
+            RobotError::new(
+                format!("line {}", error.pos().row),
+                format!("not XML: {error}"),
+                "expected a URDF; `check_urdf FILE` of liburdfdom-tools finds the same error",
+            )
+        })?;
+        let root = document.root_element();
+        let line = |node: Node| document.text_pos_at(node.range().start).row;
+        if let Some(node) = root.descendants().find(|node| node.tag_name().namespace().is_some_and(is_xacro)) {
+            return Err(RobotError::new(
+                format!("line {}", line(node)),
+                format!("found <xacro:{}>, expected a URDF without macros", node.tag_name().name()),
+                "expand it: xacro robot.urdf.xacro > robot.urdf",
+            ));
+        }
+        if root.tag_name().name() != "robot" {
+            return Err(RobotError::new(
+                format!("line {}", line(root)),
+                format!("found <{}>, expected <robot>", root.tag_name().name()),
+                "a URDF is one <robot> element with links and joints; SDF and MJCF can be converted to it",
+            ));
+        }
+        let elements = |name: &'static str| root.children().filter(move |node| node.has_tag_name(name));
+        let links: HashMap<&str, u32> =
+            elements("link").filter_map(|node| Some((node.attribute("name")?, line(node)))).collect();
+        let mut joints: Vec<(UrdfJoint, [&str; 2])> = Vec::new();
+        for node in elements("joint") {
+            let joint = read(node, line(node))?;
+            let place = format!("line {}, joint '{}'", joint.line, joint.name);
+            if let Some((before, _)) = joints.iter().find(|(before, _)| before.name == joint.name) {
+                let what = format!("the name is taken by the joint of line {}, expected one of its own", before.line);
+                return Err(RobotError::new(place, what, "rename one of the two"));
+            }
+            let mut ends = [""; 2];
+            for (end, tag) in ends.iter_mut().zip(["parent", "child"]) {
+                let link = child(node, tag).and_then(|node| node.attribute("link")).ok_or_else(|| {
+                    let what = format!("found no <{tag} link=\"...\"/>, expected the link's name");
+                    RobotError::new(&place, what, "a joint stands between two links: name both")
+                })?;
+                if !links.contains_key(link) {
+                    let what = format!("its {tag} link '{link}' is not in the file, which has {} links", links.len());
+                    return Err(RobotError::new(
+                        place,
+                        what,
+                        format!("add <link name=\"{link}\"/> or correct the name"),
+                    ));
+                }
+                *end = link;
+            }
+            joints.push((joint, ends));
+        }
+        if joints.is_empty() {
+            return Err(RobotError::new("<robot>", "found no joint, expected at least one", "is this the whole file?"));
+        }
+        let name = root.attribute("name").unwrap_or("robot").to_owned();
+        Ok(Self { name, joints: tree(joints)? })
+    }
+
+    /// Index of the joint with this name.
+    pub fn find(&self, name: &str) -> Option<usize> {
+        self.joints.iter().position(|joint| joint.name == name)
+    }
+
+    /// The joint and those that carry it, outwards in.
+    pub fn chain(&self, joint: usize) -> impl Iterator<Item = usize> + '_ {
+        std::iter::successors(Some(joint), |at| self.joints[*at].parent)
+    }
+
+    /// The frame of every joint in the root link's, all angles zero.
+    pub fn frames(&self) -> Vec<Isometry3<f64>> {
+        let frame = |joint| self.chain(joint).fold(Isometry3::identity(), |frame, at| self.joints[at].origin * frame);
+        (0..self.joints.len()).map(frame).collect()
+    }
+}
+
+fn is_xacro(namespace: &str) -> bool {
+    namespace.contains("xacro")
+}
+
+fn child<'a, 'b>(node: Node<'a, 'b>, name: &str) -> Option<Node<'a, 'b>> {
+    node.children().find(|node| node.has_tag_name(name))
+}
+
+/// A joint but for its place in the tree.
+fn read(node: Node, line: u32) -> Result<UrdfJoint, RobotError> {
+    let name = node.attribute("name").filter(|name| !name.is_empty()).ok_or_else(|| {
+        RobotError::new(format!("line {line}"), "found a <joint> without a name, expected name=\"...\"", "name it")
+    })?;
+    let place = format!("line {line}, joint '{name}'");
+    let number = |tag: &str, attribute: &str| -> Result<Option<f64>, RobotError> {
+        let Some(text) = child(node, tag).and_then(|node| node.attribute(attribute)) else { return Ok(None) };
+        match text.trim().parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(Some(value)),
+            _ => {
+                let what = format!("<{tag} {attribute}=\"{text}\">: expected a finite number");
+                Err(RobotError::new(&place, what, "angles are in radians, lengths in metres, as 1.5708"))
+            }
+        }
+    };
+    let three = |tag: &str, attribute: &str| -> Result<Option<Vector3<f64>>, RobotError> {
+        let Some(text) = child(node, tag).and_then(|node| node.attribute(attribute)) else { return Ok(None) };
+        let numbers: Option<Vec<f64>> = text.split_whitespace().map(|x| x.parse().ok()).collect();
+        match numbers.as_deref() {
+            Some(&[x, y, z]) if [x, y, z].iter().all(|x| x.abs() < 1e6) => Ok(Some(Vector3::new(x, y, z))),
+            _ => {
+                let what = format!("<{tag} {attribute}=\"{text}\">: expected three numbers");
+                Err(RobotError::new(&place, what, "as in \"0 0 1\""))
+            }
+        }
+    };
+    let motion = match node.attribute("type") {
+        Some("revolute") => Motion::Revolute,
+        Some("continuous") => Motion::Continuous,
+        Some("fixed") => Motion::Fixed,
+        Some("prismatic") => Motion::Other("prismatic"),
+        Some("planar") => Motion::Other("planar"),
+        Some("floating") => Motion::Other("floating"),
+        found => {
+            let what = format!("found the type '{}'", found.unwrap_or("(none)"));
+            let help = "expected revolute, continuous, fixed, prismatic, planar or floating";
+            return Err(RobotError::new(place, what, help));
+        }
+    };
+    let place_of = three("origin", "xyz")?.unwrap_or_default();
+    let turn = three("origin", "rpy")?.unwrap_or_default();
+    let axis = three("axis", "xyz")?.unwrap_or_else(Vector3::x).try_normalize(1e-6);
+    let axis = match (axis, motion) {
+        (Some(axis), _) => axis,
+        (None, Motion::Fixed | Motion::Other(_)) => Vector3::x(),
+        (None, _) => {
+            let what = "<axis>: found a vector of length zero, expected a direction";
+            return Err(RobotError::new(place, what, "as in <axis xyz=\"0 1 0\"/>"));
+        }
+    };
+    let both = |tag, soft, pick: fn(f64, f64) -> f64| -> Result<Option<f64>, RobotError> {
+        let (hard, soft) = (number("limit", tag)?, number("safety_controller", soft)?);
+        Ok(hard.zip(soft).map(|(hard, soft)| pick(hard, soft)).or(hard).or(soft))
+    };
+    let mimic = match child(node, "mimic") {
+        None => None,
+        Some(mimic) => Some(Mimic {
+            joint: mimic.attribute("joint").unwrap_or_default().to_owned(),
+            multiplier: number("mimic", "multiplier")?.unwrap_or(1.0),
+            offset: number("mimic", "offset")?.unwrap_or(0.0),
+        }),
+    };
+    Ok(UrdfJoint {
+        name: name.to_owned(),
+        line,
+        motion,
+        parent: None,
+        origin: Isometry3::from_parts(
+            Translation3::from(place_of),
+            UnitQuaternion::from_euler_angles(turn.x, turn.y, turn.z),
+        ),
+        axis,
+        lower: both("lower", "soft_lower_limit", f64::max)?,
+        upper: both("upper", "soft_upper_limit", f64::min)?,
+        velocity: number("limit", "velocity")?,
+        mimic,
+    })
+}
+
+/// Finds every joint's parent. Every link has one joint at most that moves it, and every way inwards ends at a root.
+fn tree(joints: Vec<(UrdfJoint, [&str; 2])>) -> Result<Vec<UrdfJoint>, RobotError> {
+    let mut mover: HashMap<&str, usize> = HashMap::new();
+    for (index, (joint, [_, child])) in joints.iter().enumerate() {
+        if let Some(other) = mover.insert(child, index) {
+            let (place, other) = (format!("line {}, joint '{}'", joint.line, joint.name), &joints[other].0);
+            let what = format!("its child '{child}' is that of '{}' (line {}) already", other.name, other.line);
+            return Err(RobotError::new(place, what, "expected a tree: a link has one parent; cut the loop open"));
+        }
+    }
+    let parents: Vec<Option<usize>> = joints.iter().map(|(_, [parent, _])| mover.get(parent).copied()).collect();
+    // As many steps as there are joints lead out of every chain, but not out of a loop.
+    for (index, (joint, _)) in joints.iter().enumerate() {
+        let mut at = Some(index);
+        for _ in 0..joints.len() {
+            at = at.and_then(|at| parents[at]);
+        }
+        if let Some(inside) = at {
+            let ring = std::iter::successors(parents[inside], |at| parents[*at]).take_while(|at| *at != inside);
+            let names: Vec<&str> = ring.chain([inside]).map(|at| joints[at].0.name.as_str()).collect();
+            let place = format!("line {}, joint '{}'", joint.line, joint.name);
+            let what = format!("it hangs on a loop of joints: {}", names.join(", "));
+            return Err(RobotError::new(place, what, "expected a tree with one root link; cut the loop open"));
+        }
+    }
+    Ok(joints.into_iter().zip(parents).map(|((joint, _), parent)| UrdfJoint { parent, ..joint }).collect())
+}
