@@ -2,6 +2,8 @@
 //!
 //! `KINESIC_SHOTS=FOLDER` keeps the pictures that are taken on the way.
 
+mod drawn;
+
 use std::path::{Path, PathBuf};
 
 use image::{DynamicImage, RgbaImage};
@@ -10,14 +12,12 @@ use kinesic_firmware_sim::build::{self, Folders};
 use kinesic_firmware_sim::toolchain;
 use kinesic_host::clip::JointMap;
 use kinesic_host::face::warp::Warp;
-use kinesic_host::face::{TrainOptions, Wish, edit, made, train};
+use kinesic_host::face::{Wish, edit};
 use kinesic_host::gait::{Manner, walk};
 use kinesic_host::models;
-use kinesic_host::pack::{PackFile, Provenance};
+use kinesic_host::pack::PackFile;
 use kinesic_host::prepare::Source;
 use kinesic_host::view::{self, View, ViewClip, ViewFace, ViewPack};
-use rand::SeedableRng;
-use rand::rngs::ChaCha8Rng;
 use serde_json::Value;
 
 /// The core of the page, built again. `KINESIC_WASM=write` keeps it: `./ci.sh wasm`.
@@ -259,19 +259,6 @@ fn every_control_changes_what_it_says() {
     assert!(at.errors.is_empty() && state(&mut at)["errors"] == serde_json::json!([]), "{:?}", at.errors);
 }
 
-/// A pack trained on made faces, and two drawn ones: of 500 pixels, and of 1000, which the page makes smaller.
-fn faces() -> (PackFile, [ViewFace; 2]) {
-    let mut random = ChaCha8Rng::seed_from_u64(1);
-    let trained =
-        train(&made::faces(600, &mut random), "smile", &TrainOptions { clusters: 3, ..TrainOptions::default() });
-    let file = PackFile::from_bytes(&trained.unwrap().model.pack(&Provenance::default()));
-    let faces = [("a face", 2, 0.3), ("another", 4, 0.8)].map(|(name, size, strength)| {
-        let landmarks = made::landmarks(strength, 0.2, &mut random).map(|point| point.map(|x| size as f32 * x));
-        ViewFace { name: name.to_owned(), picture: made::draw(&landmarks, 250 * size).into(), landmarks }
-    });
-    (file, faces)
-}
-
 fn face_page(folder: &Path, (file, faces): &(PackFile, [ViewFace; 2])) -> PathBuf {
     let face_packs = vec![ViewPack { name: "smile".to_owned(), file: file.clone() }];
     let shown = View { face_packs, faces: faces.to_vec(), ..View::default() };
@@ -310,7 +297,7 @@ fn difference(a: &[u8], b: &[u8], original: &[u8]) -> f64 {
 #[ignore = "needs chromium: firmware-sim/setup.sh"]
 fn the_slider_of_a_face_gives_the_hosts_landmarks_and_its_picture() {
     let folder = tempfile::tempdir().unwrap();
-    let made = faces();
+    let made = drawn::faces();
     let path = face_page(folder.path(), &made);
     let mut at = Browser::open(&path, [1400, 1000], false).unwrap();
     at.wait("typeof kinesic === 'object' && kinesic.compared").unwrap();
@@ -336,7 +323,7 @@ fn the_slider_of_a_face_gives_the_hosts_landmarks_and_its_picture() {
         let changes = f32s(&first["changes"]);
         let between = f32s(&first["between"]);
         println!("{}: between two warps off by {between:?} pixels, mean and most", face.name);
-        assert!(between[0] < 0.3 * scale as f32, "{between:?}");
+        assert!(between[0] < 0.5, "{between:?}");
         let last = changes.len() - 1;
         // Both ends, one of the host's warps, halfway between two, anywhere.
         let halfway = changes[last - 1].midpoint(changes[last]);
@@ -357,7 +344,9 @@ fn the_slider_of_a_face_gives_the_hosts_landmarks_and_its_picture() {
                 "{}, change {by:.3}: off by {off:.2} grey levels, moved by {moved:.2}; {} ms",
                 face.name, now["cost"]
             );
-            assert!(off < 0.3 * moved && off < 1.5, "{off} of {moved}");
+            // At the host's own warps what is off is their coarser grid; elsewhere two of them are mixed.
+            let share = if changes.contains(&by) { 0.25 } else { 0.6 };
+            assert!(off < share * moved, "{off} of {moved}");
         }
         shot(&mut at, &format!("face-{index}.png"));
     }
@@ -377,7 +366,7 @@ fn the_slider_of_a_face_gives_the_hosts_landmarks_and_its_picture() {
 #[ignore = "needs chromium: firmware-sim/setup.sh"]
 fn a_face_fits_a_phone() {
     let folder = tempfile::tempdir().unwrap();
-    let path = face_page(folder.path(), &faces());
+    let path = face_page(folder.path(), &drawn::faces());
     let mut at = Browser::open(&path, [390, 844], true).unwrap();
     let dark = serde_json::json!({"features": [{"name": "prefers-color-scheme", "value": "dark"}]});
     at.call("Emulation.setEmulatedMedia", dark).unwrap();

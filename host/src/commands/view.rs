@@ -80,8 +80,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let bar = spinner();
     bar.set_message("reading");
     let (face_packs, packs) = read_packs(&packs)?.into_iter().partition::<Vec<_>, _>(is_face);
-    let faces = args.landmarks.as_ref().map(|table| photographed(&args.image, table)).transpose()?.unwrap_or_default();
-    match (face_packs.first(), faces.first()) {
+    match (face_packs.first(), args.image.first()) {
         (Some(pack), None) => {
             return Err(miette!(
                 help = "add --image PICTURE and --landmarks TABLE, as for `kinesic face`",
@@ -89,15 +88,16 @@ pub fn run(args: &Args) -> miette::Result<()> {
                 pack.name
             ));
         }
-        (None, Some(face)) => {
+        (None, Some(picture)) => {
             return Err(miette!(
-                help = "name one before --image; `kinesic train face` makes it",
+                help = "name one: kinesic view smile.kin --image ...; `kinesic train face` makes it",
                 "there is no face pack for {}",
-                face.name
+                picture.display()
             ));
         }
         _ => {}
     }
+    let faces = args.landmarks.as_ref().map(|table| photographed(&args.image, table)).transpose()?.unwrap_or_default();
     let mut shown = View { face_packs, faces: faces.into_iter().map(face).collect(), ..View::default() };
     if !packs.is_empty() || !clips.is_empty() || shown.faces.is_empty() {
         shown.packs = if packs.is_empty() { own_packs() } else { packs };
