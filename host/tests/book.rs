@@ -8,6 +8,12 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use kinesic::face::{Landmarks, POINTS};
+use kinesic_host::face::{Face, TrainOptions, made, train};
+use kinesic_host::pack::Provenance;
+use rand::SeedableRng;
+use rand::rngs::ChaCha8Rng;
+
 /// Starts of command lines that are not run here.
 const ELSEWHERE: [&str; 5] = [
     // .ci/run runs these in a fresh clone, and the demo's command in `cli.rs`.
@@ -68,9 +74,28 @@ fn folder() -> tempfile::TempDir {
             .unwrap();
     }
     std::fs::remove_dir_all(folder.path().join("made")).unwrap();
+    face(folder.path());
     std::os::unix::fs::symlink(repository().join("models").canonicalize().unwrap(), folder.path().join("models"))
         .unwrap();
     folder
+}
+
+/// A table of labelled faces, `smile.kin` made of it, and a picture `me.jpg` with its landmarks.
+fn face(folder: &Path) {
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    let faces = made::faces(300, &mut random);
+    let options = TrainOptions { clusters: 1, ..TrainOptions::default() };
+    let trained = train(&faces, "smile", &options).unwrap();
+    std::fs::write(folder.join("smile.kin"), trained.model.pack(&Provenance::default())).unwrap();
+    let columns = (0..POINTS).map(|i| format!(",x{i},y{i}")).collect::<String>();
+    let numbers = |landmarks: &Landmarks| landmarks.map(|[x, y]| format!(",{x},{y}")).concat();
+    let row =
+        |face: &Face| format!("{},{},{}{}\n", face.picture, face.person, face.label.unwrap(), numbers(&face.landmarks));
+    let rows = faces.iter().map(row).collect::<String>();
+    std::fs::write(folder.join("faces.csv"), format!("image,subject,smile{columns}\n{rows}")).unwrap();
+    let me = made::landmarks(0.4, 0.0, &mut random);
+    made::draw(&me, 250).save(folder.join("me.jpg")).unwrap();
+    std::fs::write(folder.join("me.csv"), format!("image{columns}\nme.jpg{}\n", numbers(&me))).unwrap();
 }
 
 /// The first name under which a clip of the demo was kept.

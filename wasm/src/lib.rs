@@ -6,14 +6,16 @@
 #![no_std]
 
 mod engine;
+mod face;
 mod memory;
 
 use core::fmt::Write;
 
 use engine::Engine;
-use kinesic::Pack;
+use kinesic::face::FaceSynth;
+use kinesic::{LoadError, Pack};
 use kinesic::pose::{World, forward};
-use memory::{Floats as _, Write as _, memory};
+use memory::{Floats as _, Memory, Write as _, memory};
 
 /// Joints that a pose holds.
 pub const JOINTS: usize = 128;
@@ -27,12 +29,30 @@ pub unsafe extern "C" fn load(pack: *const u8, len: usize) -> usize {
     // SAFETY: by the caller's promise.
     let bytes: &'static [u8] = unsafe { core::slice::from_raw_parts(pack, len) };
     let memory = memory();
-    memory.message.clear();
     memory.mask = [1.0; JOINTS];
-    match Pack::load(bytes).and_then(|pack| Engine::load(&pack)) {
-        Ok(engine) => memory.engine.put(engine),
+    let loaded = Pack::load(bytes).and_then(|pack| Engine::load(&pack)).map(|engine| memory.engine.put(engine));
+    answer(memory, loaded)
+}
+
+/// Takes the face pack at an address, as [`load`] does the others.
+///
+/// # Safety
+/// As for [`load`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn load_face(pack: *const u8, len: usize) -> usize {
+    // SAFETY: by the caller's promise.
+    let bytes: &'static [u8] = unsafe { core::slice::from_raw_parts(pack, len) };
+    let memory = memory();
+    let loaded = Pack::load(bytes).and_then(|pack| FaceSynth::load(&pack)).map(|model| memory.face.put(model));
+    answer(memory, loaded)
+}
+
+/// Length of the message that says why there was no load, 0 if there was one.
+fn answer(memory: &mut Memory, loaded: Result<(), LoadError>) -> usize {
+    memory.message.clear();
+    if let Err(error) = loaded {
         // Writing to a message cannot fail: what is too long is cut.
-        Err(error) => drop(write!(memory.message, "{error}").is_ok()),
+        drop(write!(memory.message, "{error}").is_ok());
     }
     memory.message.text().len()
 }
@@ -109,6 +129,34 @@ pub extern "C" fn place(which: u32) {
         let mut world = World::identity();
         forward(engine.skeleton(), &pose, &mut world);
         memory.positions = world.positions.map(Into::into);
+    }
+}
+
+/// Address of the landmarks that [`change`] reads, `[68]` of x, y.
+#[unsafe(no_mangle)]
+pub extern "C" fn landmarks() -> *mut f32 {
+    memory().landmarks.as_mut_ptr().cast()
+}
+
+/// Address of the landmarks that [`change`] writes, `[68]` of x, y.
+#[unsafe(no_mangle)]
+pub extern "C" fn changed() -> *const f32 {
+    memory().changed.as_ptr().cast()
+}
+
+/// Address of what [`change`] read: cluster of head pose, strength, the strength aimed at, the strength of the changed landmarks.
+#[unsafe(no_mangle)]
+pub extern "C" fn reading() -> *const f32 {
+    memory().reading.as_ptr()
+}
+
+/// Changes a single face's strength by so much: [`landmarks`] to [`changed`] and [`reading`]. What is no face stays as it is, with a
+/// reading of zeros.
+#[unsafe(no_mangle)]
+pub extern "C" fn change(by: f32) {
+    let memory = memory();
+    if let Some(model) = memory.face.get() {
+        (memory.changed, memory.reading) = face::change(model, &memory.landmarks, by);
     }
 }
 

@@ -5,10 +5,12 @@ use core::fmt;
 use core::mem::MaybeUninit;
 
 use kinesic::Pose;
+use kinesic::face::{Landmarks, POINTS};
 use kinesic::nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use crate::JOINTS;
 use crate::engine::{Engine, HostPose};
+use crate::face::HostFace;
 
 /// Floats of a pose.
 const LEN: usize = 3 + 4 * JOINTS;
@@ -18,7 +20,11 @@ pub type PoseFloats = [f32; LEN];
 
 /// Everything that an instance has.
 pub struct Memory {
-    pub engine: Slot,
+    pub engine: Slot<Engine>,
+    pub face: Slot<HostFace>,
+    pub landmarks: Landmarks,
+    pub changed: Landmarks,
+    pub reading: [f32; 4],
     pub input: PoseFloats,
     pub other: PoseFloats,
     pub output: PoseFloats,
@@ -34,7 +40,11 @@ unsafe impl Sync for Cell {}
 
 // All zero, so that it costs nothing in the file.
 static MEMORY: Cell = Cell(UnsafeCell::new(Memory {
-    engine: Slot { loaded: false, engine: MaybeUninit::uninit() },
+    engine: Slot::empty(),
+    face: Slot::empty(),
+    landmarks: [[0.0; 2]; POINTS],
+    changed: [[0.0; 2]; POINTS],
+    reading: [0.0; 4],
     input: [0.0; LEN],
     other: [0.0; LEN],
     output: [0.0; LEN],
@@ -50,23 +60,27 @@ pub fn memory() -> &'static mut Memory {
     unsafe { &mut *MEMORY.0.get() }
 }
 
-/// The pack's model and its state. (An `Option` would mark its absence by a value that is not zero.)
-pub struct Slot {
+/// What a pack holds, once it is loaded. (An `Option` would mark its absence by a value that is not zero.)
+pub struct Slot<T> {
     loaded: bool,
-    engine: MaybeUninit<Engine>,
+    value: MaybeUninit<T>,
 }
 
-impl Slot {
-    /// Puts an engine there.
-    pub fn put(&mut self, engine: Engine) {
-        self.engine = MaybeUninit::new(engine);
+impl<T> Slot<T> {
+    const fn empty() -> Self {
+        Self { loaded: false, value: MaybeUninit::uninit() }
+    }
+
+    /// Puts a value there.
+    pub fn put(&mut self, value: T) {
+        self.value = MaybeUninit::new(value);
         self.loaded = true;
     }
 
-    /// The engine, after a load.
-    pub fn get(&mut self) -> Option<&mut Engine> {
+    /// The value, after a load.
+    pub fn get(&mut self) -> Option<&mut T> {
         // SAFETY: it was written before `loaded` was set.
-        self.loaded.then(|| unsafe { self.engine.assume_init_mut() })
+        self.loaded.then(|| unsafe { self.value.assume_init_mut() })
     }
 }
 

@@ -8,12 +8,13 @@ use image::{DynamicImage, ImageFormat, RgbImage};
 use kinesic::Pack;
 use kinesic::face::{Landmarks, POINTS};
 use kinesic_host::face::warp::Warp;
-use kinesic_host::face::{Edit, Face, Wish, edit, landmarks};
+use kinesic_host::face::{Edit, Wish, edit};
 use kinesic_host::pack::PackFile;
 use miette::{IntoDiagnostic, WrapErr, miette};
 use serde::Serialize;
 
 use super::output::{check_output, print_json, spinner, write_whole};
+use super::pictures::{Photographed, photographed};
 
 /// Width of a picture on a sheet.
 const SHEET: u32 = 256;
@@ -104,29 +105,25 @@ pub fn run(args: &Args) -> miette::Result<()> {
     }
     let file = PackFile::read(&args.pack).into_diagnostic()?;
     let pack = file.pack().into_diagnostic()?;
-    let table = landmarks::read(&args.landmarks, None).into_diagnostic()?;
     let bar = spinner();
     bar.set_message("warping");
     let mut done = Vec::new();
     let mut rows = Vec::new();
     let mut moved = Vec::new();
-    for path in &args.image {
-        let face = find(&table, path, &args.landmarks)?;
-        let picture = image::open(path).into_diagnostic().wrap_err_with(|| path.display().to_string())?;
-        inside(&face.landmarks, &picture, path)?;
+    for (path, face) in args.image.iter().zip(photographed(&args.image, &args.landmarks)?) {
         let wishes = match (args.sheet, wish) {
             (true, Wish::Change(by)) => vec![Wish::Change(-by), Wish::Change(by)],
             _ => vec![wish],
         };
         let mut made = Vec::new();
         for wish in wishes {
-            let (edited, warp, picture) = change(&pack, face, &picture, wish, path)?;
+            let (edited, warp, picture) = change(&pack, &face, wish, path)?;
             done.push(changed(path, wish, &edited, &warp));
-            moved.push((face.picture.clone(), edited.landmarks));
+            moved.push((face.name.clone(), edited.landmarks));
             made.push(picture);
         }
         if let [less, more] = &made[..] {
-            made = vec![less.clone(), picture, more.clone()];
+            made = vec![less.clone(), face.picture, more.clone()];
         }
         rows.push(made);
     }
@@ -164,50 +161,11 @@ pub fn run(args: &Args) -> miette::Result<()> {
     Ok(())
 }
 
-/// The line of the table about a picture.
-fn find<'a>(table: &'a [Face], picture: &Path, path: &Path) -> miette::Result<&'a Face> {
-    let name = picture.file_name().unwrap_or_default().to_string_lossy();
-    if let [only] = table {
-        return Ok(only);
-    }
-    let stem = |name: &str| Path::new(name).file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let exact = table.iter().find(|face| face.picture == name);
-    exact.or_else(|| table.iter().find(|face| stem(&face.picture) == stem(&name))).ok_or_else(|| {
-        miette!(
-            help = "add its line, or give a table with one line",
-            "{}: none of its {} lines is about {name}; the first is about {}",
-            path.display(),
-            table.len(),
-            table.first().map_or("", |face| &face.picture)
-        )
-    })
-}
-
-/// Landmarks of another picture, or of this one at another size, would warp the wrong place.
-fn inside(landmarks: &Landmarks, picture: &DynamicImage, path: &Path) -> miette::Result<()> {
-    let (width, height) = (picture.width() as f32, picture.height() as f32);
-    let count = landmarks.iter().filter(|[x, y]| (0.0..width).contains(x) && (0.0..height).contains(y)).count();
-    if 2 * count >= POINTS {
-        return Ok(());
-    }
-    Err(miette!(
-        help = "landmarks are in pixels of this very picture, from its top left corner",
-        "{}: only {count} of the {POINTS} landmarks are inside the picture of {width} x {height} pixels",
-        path.display()
-    ))
-}
-
-fn change(
-    pack: &Pack,
-    face: &Face,
-    picture: &DynamicImage,
-    wish: Wish,
-    path: &Path,
-) -> miette::Result<(Edit, Warp, DynamicImage)> {
+fn change(pack: &Pack, face: &Photographed, wish: Wish, path: &Path) -> miette::Result<(Edit, Warp, DynamicImage)> {
     let edited = edit(pack, &face.landmarks, wish).into_diagnostic()?;
     let edited = edited.ok_or_else(|| miette!("{}: the landmarks are no face", path.display()))?;
     let warp = Warp::new(&face.landmarks, &edited.offsets).into_diagnostic()?;
-    let picture = warp.apply(picture).into_diagnostic().wrap_err_with(|| path.display().to_string())?;
+    let picture = warp.apply(&face.picture).into_diagnostic().wrap_err_with(|| path.display().to_string())?;
     Ok((edited, warp, picture))
 }
 

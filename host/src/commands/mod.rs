@@ -19,6 +19,7 @@ mod mask;
 mod mix;
 mod modulate;
 mod output;
+mod pictures;
 mod quantize;
 mod score;
 mod synth;

@@ -7,26 +7,28 @@ use kinesic_host::gait::{Manner, walk};
 use kinesic_host::models;
 use kinesic_host::pack::PackFile;
 use kinesic_host::prepare::Source;
-use kinesic_host::view::{self, ViewClip, ViewPack};
+use kinesic_host::view::{self, View, ViewClip, ViewFace, ViewPack};
 use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
 
 use super::clips::{Reading, clip_paths};
 use super::inspect::is_pack;
 use super::output::{check_output, command_line, print_json, spinner, write_whole};
+use super::pictures::{Photographed, photographed};
 
-/// Make a page on which packs play clips, live: one HTML file that opens from disk
+/// Make a page on which packs play clips and change faces, live: one HTML file that opens from disk
 ///
 /// The page runs the device's own code, compiled to WebAssembly, frame by frame: skeletons side by side, time, strength or
 /// expressiveness, joints, plots, foot contacts. Without packs it shows the two that come with the program; without clips, a
-/// made-up walk.
+/// made-up walk. A face pack with pictures and their landmarks shows the faces with a slider.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
   kinesic view
   kinesic view angry.kin walk.bvh --out angry.html
   kinesic view angry.kin walk.bvh --target angry-walk.bvh
-  kinesic view models/mechanics.kin walk.bvh dance.bvh")]
+  kinesic view models/mechanics.kin walk.bvh dance.bvh
+  kinesic view smile.kin --image me.jpg --landmarks me.csv --out me.html")]
 pub struct Args {
     /// Packs (.kin) and clips (BVH, Kinect CSV, or folders of them), in any order
     #[arg(value_name = "FILE")]
@@ -34,13 +36,19 @@ pub struct Args {
     /// What the clip should become: shown beside it (may be repeated, in the order of the clips)
     #[arg(long, value_name = "CLIP")]
     target: Vec<PathBuf>,
+    /// Picture of a face for the face packs (JPEG or PNG; may be repeated)
+    #[arg(long, value_name = "IN.jpg", requires = "landmarks")]
+    image: Vec<PathBuf>,
+    /// Table with the pictures' landmarks: the line whose image is the picture's file name, or the only line
+    #[arg(long, value_name = "FILE.csv", requires = "image")]
+    landmarks: Option<PathBuf>,
     /// HTML file to write
     #[arg(long, value_name = "FILE.html", default_value = "kinesic-view.html")]
     out: PathBuf,
     /// Seed of the made-up walk
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Print one JSON object: out, bytes, packs, clips
+    /// Print one JSON object: out, bytes, packs, clips, faces
     #[arg(long)]
     json: bool,
     #[command(flatten)]
@@ -53,6 +61,7 @@ struct Summary {
     bytes: usize,
     packs: Vec<String>,
     clips: Vec<String>,
+    faces: Vec<String>,
 }
 
 /// Runs the command.
@@ -70,32 +79,65 @@ pub fn run(args: &Args) -> miette::Result<()> {
     }
     let bar = spinner();
     bar.set_message("reading");
-    let packs = if packs.is_empty() { own_packs() } else { read_packs(&packs)? };
-    let clips = if clips.is_empty() { vec![made_walk(args.seed)?] } else { read_clips(&clips, args)? };
+    let (face_packs, packs) = read_packs(&packs)?.into_iter().partition::<Vec<_>, _>(is_face);
+    match (face_packs.first(), args.image.first()) {
+        (Some(pack), None) => {
+            return Err(miette!(
+                help = "add --image PICTURE and --landmarks TABLE, as for `kinesic face`",
+                "{}.kin is a face pack, and there is no picture of a face",
+                pack.name
+            ));
+        }
+        (None, Some(picture)) => {
+            return Err(miette!(
+                help = "name one: kinesic view smile.kin --image ...; `kinesic train face` makes it",
+                "there is no face pack for {}",
+                picture.display()
+            ));
+        }
+        _ => {}
+    }
+    let faces = args.landmarks.as_ref().map(|table| photographed(&args.image, table)).transpose()?.unwrap_or_default();
+    let mut shown = View { face_packs, faces: faces.into_iter().map(face).collect(), ..View::default() };
+    if !packs.is_empty() || !clips.is_empty() || shown.faces.is_empty() {
+        shown.packs = if packs.is_empty() { own_packs() } else { packs };
+        shown.clips = if clips.is_empty() { vec![made_walk(args.seed)?] } else { read_clips(&clips, args)? };
+    }
     bar.set_message("playing");
-    let title = format!("kinesic: {}", packs.iter().map(|pack| pack.name.as_str()).collect::<Vec<_>>().join(", "));
+    let packs: Vec<String> = shown.packs.iter().chain(&shown.face_packs).map(|pack| pack.name.clone()).collect();
+    let title = format!("kinesic: {}", packs.join(", "));
     let made = format!("Made by kinesic {} with: {}", env!("CARGO_PKG_VERSION"), command_line());
-    let page = view::page(&title, &made, &packs, &clips, view::WASM).into_diagnostic()?;
+    let page = view::page(&title, &made, &shown, view::WASM).into_diagnostic()?;
     write_whole(&args.out, page.as_bytes())?;
     bar.finish_and_clear();
     let summary = Summary {
         out: args.out.display().to_string(),
         bytes: page.len(),
-        packs: packs.into_iter().map(|pack| pack.name).collect(),
-        clips: clips.into_iter().map(|clip| clip.name).collect(),
+        packs,
+        clips: shown.clips.into_iter().map(|clip| clip.name).collect(),
+        faces: shown.faces.into_iter().map(|face| face.name).collect(),
     };
     if args.json {
         return print_json(&summary);
     }
-    println!(
-        "{}: {} bytes, packs: {}; clips: {}",
-        summary.out,
-        summary.bytes,
-        summary.packs.join(", "),
-        summary.clips.join(", ")
-    );
+    let list = |what: &str, names: &[String]| match names {
+        [] => String::new(),
+        names => format!("; {what}: {}", names.join(", ")),
+    };
+    let [packs, clips, faces] = [("packs", &summary.packs), ("clips", &summary.clips), ("faces", &summary.faces)]
+        .map(|(what, names)| list(what, names));
+    println!("{}: {} bytes{packs}{clips}{faces}", summary.out, summary.bytes);
     println!("Open it in a browser.");
     Ok(())
+}
+
+/// A pack that changes faces.
+fn is_face(pack: &ViewPack) -> bool {
+    pack.file.pack().is_ok_and(|pack| pack.metadata().models.iter().any(|model| model.face().is_some()))
+}
+
+fn face(from: Photographed) -> ViewFace {
+    ViewFace { name: from.name, picture: from.picture, landmarks: from.landmarks }
 }
 
 fn stem(path: &Path) -> String {

@@ -4,11 +4,14 @@
 //! |---|---|
 //! | `mod` | what is shown, and the file |
 //! | `scene` | a pack on a clip: poses as the page reads them, and the digest of what the host makes of them |
+//! | `face` | a face pack on a picture: landmarks, the picture's warps, and the digest of the host's landmarks |
 //! | `assets/` | markup, style, scripts; `kinesic.wasm`, made of the crate `wasm/` by `./ci.sh wasm` |
 //!
 //! Everything is in the file: it opens from disk, without a network. The scripts share one scope, in this order: `engine.js` (the core,
-//! motions), `scene.js` (skeletons on a canvas), `plots.js` (curves), `app.js` (controls, time, what a test reads back).
+//! motions), `scene.js` (skeletons on a canvas), `plots.js` (curves), `controls.js` (sliders), `face.js` (pictures of faces), `app.js`
+//! (what is shown, time, what a test reads back).
 
+mod face;
 mod scene;
 
 use base64::Engine as _;
@@ -16,6 +19,8 @@ use base64::prelude::BASE64_STANDARD;
 use kinesic::LoadError;
 use serde::Serialize;
 
+pub use face::ViewFace;
+use scene::hash;
 pub use scene::{CHECKED, STRENGTH, digest};
 
 use crate::pack::PackFile;
@@ -27,10 +32,12 @@ pub const WASM: &[u8] = include_bytes!("assets/kinesic.wasm");
 
 const PAGE: &str = include_str!("assets/page.html");
 const STYLE: &str = include_str!("assets/style.css");
-const SCRIPTS: [&str; 4] = [
+const SCRIPTS: [&str; 6] = [
     include_str!("assets/engine.js"),
     include_str!("assets/scene.js"),
     include_str!("assets/plots.js"),
+    include_str!("assets/controls.js"),
+    include_str!("assets/face.js"),
     include_str!("assets/app.js"),
 ];
 
@@ -54,18 +61,26 @@ pub struct ViewClip {
     pub target: Option<Source>,
 }
 
+/// What is on a page.
+#[derive(Clone, Debug, Default)]
+pub struct View {
+    /// Packs that play clips.
+    pub packs: Vec<ViewPack>,
+    /// Clips.
+    pub clips: Vec<ViewClip>,
+    /// Packs that change faces.
+    pub face_packs: Vec<ViewPack>,
+    /// Pictures of faces.
+    pub faces: Vec<ViewFace>,
+}
+
 /// Why there is no page.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ViewError {
-    /// No pack or no clip.
-    #[error("the page needs at least one pack and one clip, found {packs} and {clips}")]
-    Empty {
-        /// Packs given.
-        packs: usize,
-        /// Clips given.
-        clips: usize,
-    },
+    /// Packs without something to play, or the other way round.
+    #[error("the page needs at least one pack and one clip, or a face pack and a picture")]
+    Empty,
     /// A pack is refused.
     #[error("{name}: {error}")]
     Pack {
@@ -81,6 +96,20 @@ pub enum ViewError {
         name: String,
         /// Why.
         error: RigError,
+    },
+    /// A picture cannot be shown.
+    #[error("{name}: cannot be written as JPEG: {error}")]
+    Picture {
+        /// The picture.
+        name: String,
+        /// Why.
+        error: String,
+    },
+    /// Landmarks are no face.
+    #[error("{name}: the landmarks are no face")]
+    Face {
+        /// The picture.
+        name: String,
     },
     /// A clip cannot be put on a pack's skeleton.
     #[error(transparent)]
@@ -100,6 +129,12 @@ struct Data {
     strength: f32,
     /// The joint that is plotted at first.
     joint: String,
+    #[serde(rename = "facePacks")]
+    face_packs: Vec<face::FacePackData>,
+    faces: Vec<face::FaceData>,
+    /// `[face packs][faces]`.
+    #[serde(rename = "faceScenes")]
+    face_scenes: Vec<Vec<face::FaceSceneData>>,
 }
 
 #[derive(Serialize)]
@@ -108,23 +143,35 @@ struct Named {
 }
 
 /// The page's HTML. `wasm` is [`WASM`], or another build of the same crate. `made`: who made it, with which command.
-pub fn page(title: &str, made: &str, packs: &[ViewPack], clips: &[ViewClip], wasm: &[u8]) -> Result<String, ViewError> {
-    if packs.is_empty() || clips.is_empty() {
-        return Err(ViewError::Empty { packs: packs.len(), clips: clips.len() });
+pub fn page(title: &str, made: &str, view: &View, wasm: &[u8]) -> Result<String, ViewError> {
+    let half = |packs: &[ViewPack], of: usize| packs.is_empty() != (of == 0);
+    if half(&view.packs, view.clips.len())
+        || half(&view.face_packs, view.faces.len())
+        || view.packs.is_empty() && view.face_packs.is_empty()
+    {
+        return Err(ViewError::Empty);
     }
     let mut data = Data {
         wasm: BASE64_STANDARD.encode(wasm),
         packs: Vec::new(),
-        clips: clips.iter().map(|clip| Named { name: clip.name.clone() }).collect(),
+        clips: view.clips.iter().map(|clip| Named { name: clip.name.clone() }).collect(),
         scenes: Vec::new(),
         checked: CHECKED,
         strength: STRENGTH,
         joint: String::new(),
+        face_packs: Vec::new(),
+        faces: view.faces.iter().map(face::data).collect::<Result<_, _>>()?,
+        face_scenes: Vec::new(),
     };
-    for pack in packs {
+    for pack in &view.packs {
         let player = scene::Player::new(pack)?;
-        data.scenes.push(clips.iter().map(|clip| player.scene(clip)).collect::<Result<_, _>>()?);
+        data.scenes.push(view.clips.iter().map(|clip| player.scene(clip)).collect::<Result<_, _>>()?);
         data.packs.push(player.data());
+    }
+    for pack in &view.face_packs {
+        let player = face::FacePlayer::new(pack)?;
+        data.face_scenes.push(view.faces.iter().map(|face| player.scene(face)).collect::<Result<_, _>>()?);
+        data.face_packs.push(player.data()?);
     }
     data.joint = scene::first_joint(&data.packs);
     let json = serde_json::to_string(&data).unwrap_or_else(|error| unreachable!("plain data has no JSON: {error}"));

@@ -159,10 +159,15 @@ fn words(pose: &HostPose, joints: usize) -> impl Iterator<Item = u32> {
     pose.root.iter().chain(rotations).map(|x| x.to_bits())
 }
 
-/// Two hashes over the bits of poses, as the page computes them: 16 hexadecimal digits.
+/// [`hash`] of the bits of poses.
 pub fn digest(poses: &[HostPose], joints: usize) -> String {
+    hash(poses.iter().flat_map(|pose| words(pose, joints)))
+}
+
+/// Two hashes over words, as the page computes them: 16 hexadecimal digits.
+pub(super) fn hash(words: impl Iterator<Item = u32>) -> String {
     let (mut a, mut b) = (0x811c_9dc5u32, 0x9e37_79b9u32);
-    for word in poses.iter().flat_map(|pose| words(pose, joints)) {
+    for word in words {
         a = (a ^ word).wrapping_mul(0x0100_0193);
         b = (b ^ word).wrapping_mul(0x85eb_ca6b).wrapping_add(a);
     }

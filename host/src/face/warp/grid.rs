@@ -58,6 +58,12 @@ impl Grid {
         (0..self.rows - 1).map(row).fold(1.0, f64::min)
     }
 
+    /// First and last node.
+    pub fn bounds(&self) -> [Vector2<f64>; 2] {
+        let size = Vector2::new((self.columns - 1) as f64, (self.rows - 1) as f64);
+        [self.origin, self.origin + self.cell * size]
+    }
+
     /// The displacement at a place.
     pub fn at(&self, place: Vector2<f64>) -> Vector2<f64> {
         let at = (place - self.origin) / self.cell;

@@ -102,6 +102,11 @@ impl Warp {
         self.damping
     }
 
+    /// Least and largest corner of the box outside of which nothing moves.
+    pub fn bounds(&self) -> [[f64; 2]; 2] {
+        self.grid.bounds().map(Into::into)
+    }
+
     /// Where the pixel at `[x, y]` comes from, less `[x, y]`. Exactly 0 outside the face.
     pub fn displacement(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         self.grid.at(Vector2::new(x, y)).into()

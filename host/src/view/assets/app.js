@@ -1,6 +1,5 @@
-// The page: what is shown, what is turned, and what a test reads back (`kinesic.state()`).
+// The page: what is shown, time, and what a test reads back (`kinesic.state()`).
 
-const $ = (id) => document.getElementById(id);
 const SLOT = 1.3; // metres between figures
 
 const kinesic = {
@@ -17,97 +16,6 @@ function refuse(error) {
 }
 addEventListener("error", (event) => refuse(event.error ?? event.message));
 addEventListener("unhandledrejection", (event) => refuse(event.reason));
-
-const colours = () => {
-  const style = getComputedStyle(document.documentElement);
-  return new Proxy({}, { get: (_, name) => style.getPropertyValue(`--${name}`).trim() });
-};
-
-function element(tag, properties, ...children) {
-  const made = Object.assign(document.createElement(tag), properties);
-  made.append(...children);
-  return made;
-}
-
-// A labelled slider that shows its value.
-function slider({ id, label, min, max, step, value, change }) {
-  const output = element("output", { textContent: Number(value).toFixed(2) });
-  output.htmlFor = id;
-  const input = element("input", { id, type: "range", min, max, step, value });
-  input.addEventListener("input", () => {
-    output.textContent = Number(input.value).toFixed(2);
-    change(Number(input.value));
-  });
-  return element("label", { className: "slider", htmlFor: id }, element("span", { textContent: label }), output, input);
-}
-
-// The controls of a pack.
-function panel(pack, index) {
-  const state = kinesic.controls[index];
-  const { label, help } = CONTROLS[pack.engine];
-  const [low, high] = pack.plausible;
-  const warning = element("span", { className: "warn small" });
-  const changed = () => {
-    const outside = state.strength < low || state.strength > high;
-    warning.textContent = outside ? `outside the plausible range of this pack, ${low.toFixed(2)} to ${high.toFixed(2)}` : "";
-    kinesic.results[index]?.change();
-    kinesic.stale = true;
-  };
-  const set = element("fieldset", {}, element("legend", { textContent: pack.name }));
-  const shown = element("input", { type: "checkbox", id: `shown-${index}`, checked: true });
-  shown.addEventListener("change", () => { state.shown = shown.checked; show(); });
-  set.append(element("p", { className: "soft small", textContent: `${pack.engine}, ${pack.joints.length} joints, ${pack.rate} frames a second, ${pack.size} bytes` }));
-  set.append(element("label", {}, shown, " shown"));
-  set.append(slider({ id: `strength-${index}`, label: `${label} (${help})`, min: -0.5, max: 2.5, step: 0.05, value: state.strength,
-    change: (value) => { state.strength = value; changed(); } }), warning);
-  if (pack.engine === "mechanics" && kinesic.data.clips.length > 1) set.append(mixing(index, changed));
-  set.append(mask(pack, index, changed));
-  return set;
-}
-
-// Expression from another clip.
-function mixing(index, changed) {
-  const options = kinesic.data.clips.map((clip, k) => element("option", { value: k, textContent: clip.name }));
-  const select = element("select", { id: `other-${index}` }, element("option", { value: "", textContent: "this clip" }), ...options);
-  select.addEventListener("change", () => {
-    kinesic.controls[index].other = select.value === "" ? null : Number(select.value);
-    mixed(index);
-    changed();
-  });
-  return element("label", { className: "row" }, "Expression of ", select);
-}
-
-function mixed(index) {
-  const { other } = kinesic.controls[index];
-  const result = kinesic.results[index];
-  if (result) result.other = other === null ? null : recorded(index, other).source;
-}
-
-// Weights of the joints.
-function mask(pack, index, changed) {
-  const weights = kinesic.controls[index].mask;
-  const sliders = pack.joints.map(({ name }, joint) =>
-    slider({ id: `mask-${index}-${joint}`, label: name, min: 0, max: 1, step: 0.05, value: 1, change: (value) => { weights[joint] = value; changed(); } }));
-  const all = (choose) => () => {
-    sliders.forEach((made, joint) => {
-      const input = made.querySelector("input");
-      const value = choose(joint);
-      if (value === null || Number(input.value) === value) return;
-      input.value = value;
-      input.dispatchEvent(new Event("input"));
-    });
-  };
-  const button = (id, text, choose) => {
-    const made = element("button", { id: `${id}-${index}`, type: "button", textContent: text });
-    made.addEventListener("click", all(choose));
-    return made;
-  };
-  const legs = new Set(pack.legs);
-  return element("details", {}, element("summary", { textContent: "Joints" }),
-    element("div", { className: "buttons" }, button("all", "all", () => 1), button("none", "none", () => 0),
-      button("upper", "upper body", (joint) => (legs.has(joint) ? 0 : 1)), button("legs", "legs", (joint) => (legs.has(joint) ? 1 : 0))),
-    element("div", { className: "mask" }, ...sliders));
-}
 
 // Recorded tracks of a pack and a clip, read once.
 const tracks = new Map();
@@ -256,25 +164,28 @@ async function compare(module) {
       await new Promise((done) => setTimeout(done));
     }
   }
+  await kinesic.face?.compare(module, kinesic.bits);
   const same = kinesic.bits.every(({ here, host }) => here === host);
-  const frames = Math.max(0, ...kinesic.bits.map((each) => each.frames));
-  $("bits").textContent = same ? `Same output bits as the host over ${frames} frames of every clip and pack.` : "OUTPUT DIFFERS from the host's: see kinesic.bits in the console.";
+  const most = (of) => Math.max(0, ...kinesic.bits.map((each) => each[of] ?? 0));
+  const over = [[most("frames"), "frames of every clip"], [most("changes"), "strengths of every face"]].filter(([count]) => count);
+  $("bits").textContent = same ? `Same output bits as the host over ${over.map((each) => each.join(" ")).join(", ")} and pack.` : "OUTPUT DIFFERS from the host's: see kinesic.bits in the console.";
   kinesic.compared = true;
 }
 
 kinesic.state = () => ({
   ready: Boolean(kinesic.ready), errors: kinesic.errors, playing: kinesic.playing, time: kinesic.time, duration: kinesic.duration,
   frame: kinesic.figures[0]?.track.frame(kinesic.time), drawn: kinesic.drawn, clip: kinesic.clip, joint: kinesic.joint,
-  camera: { ...kinesic.scene.camera }, target: [...kinesic.scene.target], cost: { ...kinesic.cost }, bits: kinesic.bits, compared: Boolean(kinesic.compared),
+  camera: { ...kinesic.scene?.camera }, target: [...(kinesic.scene?.target ?? [])], cost: { ...kinesic.cost }, bits: kinesic.bits, compared: Boolean(kinesic.compared),
   figures: kinesic.figures.map(({ name, role, track, contacts }) => ({ name, role, frames: track.frames, pose: [...track.pose(track.frame(kinesic.time))],
     contacts: contacts?.map((stands) => [...stands].join("")) })),
   results: kinesic.results.map((result) => result && { strength: result.strength, passes: result.passes, done: result.done, frames: result.frames, changed: result.changed, mixed: Boolean(result.mixed) }),
   controls: kinesic.controls.map((each) => ({ ...each, mask: [...each.mask] })),
+  face: kinesic.face?.state(),
 });
 
-async function begin() {
+// Skeletons: everything about packs that play clips.
+async function motions(module) {
   const { data } = kinesic;
-  const module = await WebAssembly.compile(bytes(data.wasm));
   for (const pack of data.packs) {
     pack.bones = pack.joints.flatMap(({ parent }, joint) => (parent === null ? [] : [[parent, joint]]));
     kinesic.cores.push(await Core.make(module, pack));
@@ -306,9 +217,18 @@ async function begin() {
     event.preventDefault();
   });
   show();
-  kinesic.ready = true;
   requestAnimationFrame(tick);
   if (!matchMedia("(prefers-reduced-motion: reduce)").matches) play(true);
+}
+
+async function begin() {
+  const { data } = kinesic;
+  const module = await WebAssembly.compile(bytes(data.wasm));
+  $("motions").hidden = !data.packs.length;
+  $("faces").hidden = !data.faces.length;
+  if (data.packs.length) await motions(module);
+  if (data.faces.length) kinesic.face = await Faces.make(module, data);
+  kinesic.ready = true;
   await compare(module);
 }
 

@@ -1,6 +1,6 @@
 // The core in WebAssembly: one instance a pack, and the motions that it makes.
 
-// What can be turned, an engine. Emotion strength and faces come here as rows when core has them.
+// What can be turned, an engine. Faces have a file of their own.
 const CONTROLS = {
   translator: { label: "Strength", help: "0 = the source, 1 = as learned" },
   components: { label: "Strength", help: "0 = the source, 1 = as learned" },
@@ -10,17 +10,24 @@ const CONTROLS = {
 const bytes = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
 const floats = (text) => new Float32Array(bytes(text).buffer);
 
+// An instance of the core with a pack in it, taken by `load` or `load_face`.
+async function instance(module, pack, load) {
+  const { exports } = await WebAssembly.instantiate(module, {});
+  const data = bytes(pack.bytes);
+  const at = exports.memory.buffer.byteLength;
+  exports.memory.grow(Math.ceil(data.length / 65536));
+  new Uint8Array(exports.memory.buffer, at, data.length).set(data);
+  const refused = exports[load](at, data.length);
+  const text = (length) => new TextDecoder().decode(new Uint8Array(exports.memory.buffer, exports.message(), length));
+  if (refused) throw new Error(`${pack.name}: ${text(refused)}`);
+  return exports;
+}
+
 class Core {
   static async make(module, pack) {
     const core = new Core();
-    const { exports } = await WebAssembly.instantiate(module, {});
-    const data = bytes(pack.bytes);
-    const at = exports.memory.buffer.byteLength;
-    exports.memory.grow(Math.ceil(data.length / 65536));
-    new Uint8Array(exports.memory.buffer, at, data.length).set(data);
-    const refused = exports.load(at, data.length);
+    const exports = await instance(module, pack, "load");
     const { buffer } = exports.memory;
-    if (refused) throw new Error(`${pack.name}: ${new TextDecoder().decode(new Uint8Array(buffer, exports.message(), refused))}`);
     const joints = pack.joints.length;
     const pose = (address) => new Float32Array(buffer, address, 3 + 4 * joints);
     core.exports = exports;
@@ -151,19 +158,34 @@ class Result extends Track {
   }
 }
 
-// Two hashes over the words of a result's first frames; the host has its own.
+// Two hashes over words; the host has its own.
+class Digest {
+  constructor() {
+    [this.a, this.b] = [0x811c9dc5, 0x9e3779b9];
+  }
+
+  add(words) {
+    for (const word of words) {
+      this.a = Math.imul(this.a ^ word, 0x01000193);
+      this.b = Math.imul(this.b ^ word, 0x85ebca6b) + this.a;
+    }
+  }
+
+  get text() {
+    return [this.a, this.b].map((half) => (half >>> 0).toString(16).padStart(8, "0")).join("");
+  }
+}
+
+// Of a result's first frames.
 function digest(core, source, strength, frames) {
   const words = new Uint32Array(core.output.buffer, core.output.byteOffset, core.output.length);
-  let [a, b] = [0x811c9dc5, 0x9e3779b9];
+  const digest = new Digest();
   core.exports.reset();
   core.mask.fill(1);
   for (let frame = 0; frame < Math.min(frames, source.frames); frame++) {
     core.input.set(source.pose(frame));
     core.exports.step(strength);
-    for (const word of words) {
-      a = Math.imul(a ^ word, 0x01000193);
-      b = Math.imul(b ^ word, 0x85ebca6b) + a;
-    }
+    digest.add(words);
   }
-  return [a, b].map((half) => (half >>> 0).toString(16).padStart(8, "0")).join("");
+  return digest.text;
 }

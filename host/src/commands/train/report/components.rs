@@ -31,7 +31,7 @@ pub fn page(
     page.text(&format!("{}.", trained.choice.reason));
     let row = |name: &str, value: String| vec![name.to_owned(), value];
     page.table(&Table {
-        caption: "Distances are relative: 0 is equal, 1 is as far as the thing itself is from nothing".into(),
+        caption: "Distances are relative: 0 is equal, 1 is as far as the thing itself is from nothing. Jerk: 1 is as smooth as the content".into(),
         head: vec!["figure".into(), "value".into()],
         rows: vec![
             row("components", trained.choice.count.to_string()),

@@ -1,9 +1,8 @@
 //! The report of `kinesic train face`.
 
-use kinesic::face::INNER;
-use kinesic_host::face::{Face, HostFace, REGIONS, Report, Trained, read_all};
+use kinesic_host::face::{Face, HostFace, Report, Trained, read_all};
 use kinesic_host::pack::PackFile;
-use kinesic_host::report::{Chart, Line, Report as Page, Table};
+use kinesic_host::report::{Chart, Line, Report as Page, Table, faces};
 use miette::IntoDiagnostic;
 
 /// Bars of a histogram over the plausible strengths.
@@ -15,7 +14,7 @@ pub fn page(
     training: &Report,
     held_out: Option<&Report>,
     file: &PackFile,
-    faces: &[Face],
+    training_faces: &[Face],
 ) -> miette::Result<Page> {
     let model = &trained.model;
     let mut page = Page::new(
@@ -27,16 +26,18 @@ pub fn page(
     page.heading("What it does");
     let device = HostFace::load(&pack).into_diagnostic()?;
     let largest = trained.faces.iter().enumerate().max_by_key(|(_, count)| **count).map_or(0, |(index, _)| index);
-    page.chart(&Chart {
-        caption: format!(
-            "The mean face of the largest cluster from the weakest to the strongest plausible strength ({:.2} to {:.2}), y up, in \
-             the face's own unit.",
-            model.strength[0], model.strength[1]
+    let [low, high] = model.strength;
+    let shown = [("weakest", low), ("middle", low.midpoint(high)), ("strongest", high)];
+    let shape = |(name, strength)| Some((format!("{name}, {strength:.2}"), device.shape(largest, strength)?));
+    page.figure(
+        &faces(&shown.into_iter().filter_map(shape).collect::<Vec<_>>()),
+        &format!(
+            "The device's mean face of the largest cluster of head pose, from the weakest to the strongest plausible strength \
+             (between which 98 % of the training faces lie). Strength is in units of the labels: 0 as faces labelled 0, 1 as faces labelled 1; \
+             the training labels are {}.",
+            labels(training_faces)
         ),
-        x: "to the left of the person",
-        y: "up",
-        lines: drawn(&device, largest, model.strength),
-    });
+    );
     page.heading("How well it ranks");
     let row = |name: &str, report: &Report| {
         let percent = |x: f64| format!("{:.2} %", 100.0 * x);
@@ -50,7 +51,9 @@ pub fn page(
         ]
     };
     page.table(&Table {
-        caption: "Pairs of faces with different labels, and how many of them are in that order by strength".into(),
+        caption: "Pairs of faces with different labels: how many of them the strength orders as the labels do (chance: 50 %), and the \
+                  rank correlation of strength and label (1 is perfect; with two labels it cannot come near 1)"
+            .into(),
         head: ["", "faces", "pairs", "right", "right, within clusters", "Spearman"].map(Into::into).to_vec(),
         rows: std::iter::once(row("trained on", training)).chain(held_out.map(|r| row("people held out", r))).collect(),
     });
@@ -66,14 +69,17 @@ pub fn page(
             })
             .collect(),
     });
-    let read = read_all(&pack, faces).into_diagnostic()?;
+    let read = read_all(&pack, training_faces).into_diagnostic()?;
     let middle = 0.5 * f64::from(model.strength[0] + model.strength[1]);
     let of = |upper: bool| {
         let chosen = read.iter().filter(move |read| read.face.label.is_some_and(|label| (label > middle) == upper));
         chosen.map(|read| read.reading.strength).collect::<Vec<f32>>()
     };
     page.chart(&Chart {
-        caption: "Strengths of the training faces, by label.".into(),
+        caption: format!(
+            "Strengths of the training faces, {} of them, by label: weakly is at most {middle:.2}, the middle of the plausible strengths.",
+            training_faces.len()
+        ),
         x: "strength",
         y: "faces",
         lines: vec![
@@ -87,31 +93,16 @@ pub fn page(
     Ok(page)
 }
 
-/// Brows, eyes, nose and mouth at both ends.
-fn drawn(device: &HostFace, cluster: usize, strength: [f32; 2]) -> Vec<Line> {
-    // Index of the first landmark, number, and whether the line closes.
-    const STROKES: [(u8, usize, bool); 8] = [
-        (17, 5, false),
-        (22, 5, false),
-        (27, 4, false),
-        (31, 5, false),
-        (36, 6, true),
-        (42, 6, true),
-        (48, 12, true),
-        (61, 3, false),
-    ];
-    debug_assert_eq!(REGIONS.len(), 4);
-    let mut lines = Vec::new();
-    for (name, strength) in [("weakest", strength[0]), ("strongest", strength[1])] {
-        let Some(shape) = device.shape(cluster, strength) else { continue };
-        for (first, count, closed) in STROKES {
-            let at = |landmark: u8| INNER.iter().position(|l| *l == landmark).map(|i| shape[i]);
-            let points = (0..count + usize::from(closed)).filter_map(|i| at(first + (i % count) as u8));
-            let points = points.map(|[x, y]| (f64::from(x), -f64::from(y))).collect();
-            lines.push(Line { name: name.to_owned(), points });
-        }
+/// The labels that there are, or their range.
+fn labels(faces: &[Face]) -> String {
+    let mut labels: Vec<f64> = faces.iter().filter_map(|face| face.label).collect();
+    labels.sort_by(f64::total_cmp);
+    let (first, last) = (labels.first().copied().unwrap_or_default(), labels.last().copied().unwrap_or_default());
+    labels.dedup();
+    match labels.len() {
+        2 => format!("{first} and {last}"),
+        _ => format!("{first} to {last}"),
     }
-    lines
 }
 
 fn histogram(name: &str, values: &[f32], [low, high]: [f32; 2]) -> Line {

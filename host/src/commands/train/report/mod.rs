@@ -9,8 +9,9 @@ pub mod translate;
 use std::path::{Path, PathBuf};
 
 use kinesic_host::pack::PackFile;
-use kinesic_host::report::{Report, Table};
+use kinesic_host::report::{Report, Table, latency};
 use miette::{IntoDiagnostic, miette};
+use serde_json::Value;
 
 use crate::commands::inspect;
 use crate::commands::output::{check_output, write_whole};
@@ -60,15 +61,84 @@ fn device(report: &mut Report, file: &PackFile) -> miette::Result<()> {
         pack.payload_len(),
     ));
     for model in inspect::models(&pack)? {
-        let value = |value: &serde_json::Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
         report.table(&Table {
-            caption: format!(
-                "The {}: what `kinesic inspect` prints. docs/latency.md says what a frame costs on six cores",
-                model.engine
-            ),
+            caption: format!("The {}, as `kinesic inspect` prints it", model.engine),
             head: vec!["figure".into(), "value".into()],
-            rows: model.figures.iter().map(|(name, v)| vec![name.replace('_', " "), value(v)]).collect(),
+            rows: model.figures.iter().map(|(name, v)| vec![explained(name), value(v)]).collect(),
         });
+        latency(report, model.engine);
     }
     Ok(())
+}
+
+/// A figure as text; numbers to four digits behind the point.
+fn value(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        Value::Array(values) => values.iter().map(self::value).collect::<Vec<_>>().join(" to "),
+        Value::Number(number) => match number.as_f64() {
+            Some(x) if x.fract() != 0.0 => format!("{x:.4}").trim_end_matches('0').to_owned(),
+            Some(x) => format!("{x}"),
+            None => number.to_string(),
+        },
+        other => other.to_string(),
+    }
+}
+
+/// A figure's name, and what it is.
+fn explained(figure: &str) -> String {
+    let name = figure.replace('_', " ");
+    match explain(figure) {
+        "" => name,
+        what => format!("{name}: {what}"),
+    }
+}
+
+/// What a figure of `kinesic inspect` is, with its unit.
+fn explain(figure: &str) -> &'static str {
+    match figure {
+        "style" | "attribute" => "name of what was learned",
+        "form" => "one model a joint, or one for the whole body",
+        "filter_states" => "numbers that the filters remember, two a block",
+        "drives" => "inputs of the filters",
+        "multiply_adds_per_frame_before_kinematics" => "the model itself, a frame; kinematics come on top",
+        "multiply_adds_per_update_before_the_frame" => {
+            "the model itself, a face; finding the face's frame comes on top"
+        }
+        "capacity" => "the type's parameters in Rust",
+        "state_bytes" => "RAM that is kept between frames",
+        "plausible_strength" => "strengths that training vouches for; 0 is none, 1 as learned (faces: as labelled)",
+        "hidden" => "units of the hidden layer",
+        "code" => "numbers that the autoencoder's code has",
+        "weights" => "type of the weights in flash",
+        "body_height_m" => "height of the body that it was trained on, m",
+        "hip_height_m" => "height of its hips, m",
+        "components" => "basic motions, K",
+        "stored_frames" => "frames of the stored stream in the pack",
+        "clusters" => "groups of head pose, each with its own ranking and network",
+        _ => "",
+    }
+}
+
+/// What a frame costs by core.
+fn latency(report: &mut Report, engine: &str) {
+    let workloads = latency::workloads(engine);
+    if workloads.is_empty() {
+        return;
+    }
+    let size = |w: &latency::Workload| format!("{} ({})", w.name, w.size);
+    let share = |us: u32| format!("{us} us, {:.2} %", f64::from(us) * 60.0 / 1e4);
+    report.table(&Table {
+        caption: "Longest frame by core, and its share of 1/60 s: modelled cycles of real images, without flash waits, of the firmware \
+                  workloads, not of this pack; compare the sizes. docs/latency.md says how it was measured"
+            .into(),
+        head: std::iter::once("core".to_owned()).chain(workloads.iter().map(size)).collect(),
+        rows: latency::CORES
+            .iter()
+            .enumerate()
+            .map(|(k, core)| {
+                std::iter::once((*core).to_owned()).chain(workloads.iter().map(|w| share(w.microseconds[k]))).collect()
+            })
+            .collect(),
+    });
 }

@@ -1,11 +1,15 @@
 //! Made faces, where no recorded ones may be: tests and the firmware workload.
 
+mod draw;
+
 use kinesic::face::{CONTOUR, FEATURES, FaceFrame, Landmarks, MOVING, POINTS};
 use rand::RngExt;
 use rand::rngs::ChaCha8Rng;
 
 use super::landmarks::Face;
 use super::model::{ClusterModel, FaceModel};
+
+pub use draw::draw;
 
 /// A face of a picture of 250 x 250 pixels with a smile of `strength`, the head turned by `yaw` (-1 to 1), and the chance
 /// differences of a person.

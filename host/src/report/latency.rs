@@ -1,0 +1,59 @@
+//! What a frame of each engine costs on each core, as measured on the firmware workloads. A test holds it to `docs/latency.md`.
+
+/// Cores, in the order of [`Workload::microseconds`].
+pub const CORES: [&str; 6] =
+    ["M0+ 133 MHz, no FPU", "RV32IMC 160 MHz, no FPU", "M4F 168 MHz", "M33 150 MHz", "M55 160 MHz", "M7 480 MHz"];
+
+/// A workload of the firmware check.
+#[derive(Clone, Copy, Debug)]
+pub struct Workload {
+    /// Its name in the check.
+    pub name: &'static str,
+    /// What its cost depends on.
+    pub size: &'static str,
+    /// Time of the longest frame (faces: update), microseconds of modelled cycles without wait states, by core.
+    pub microseconds: [u32; 6],
+}
+
+/// The workloads of an engine, by the name that `kinesic inspect` has for it; the first is in f32.
+pub fn workloads(engine: &str) -> &'static [Workload] {
+    match engine {
+        "translator" => &TRANSLATOR,
+        "mechanics" => &MECHANICS,
+        "components" => &COMPONENTS,
+        "face" => &FACE,
+        _ => &[],
+    }
+}
+
+const TRANSLATOR: [Workload; 2] = [
+    Workload {
+        name: "translator",
+        size: "a model a joint, 25 joints, 8225 multiply-adds",
+        microseconds: [35_478, 11_753, 561, 641, 528, 178],
+    },
+    Workload {
+        name: "translator-body",
+        size: "whole body, 25 joints, 4825 multiply-adds",
+        microseconds: [28_456, 9_497, 443, 508, 382, 152],
+    },
+];
+const MECHANICS: [Workload; 2] = [
+    Workload {
+        name: "mechanics",
+        size: "f32, 31 joints, 13992 multiply-adds",
+        microseconds: [50_221, 16_582, 802, 911, 619, 275],
+    },
+    Workload {
+        name: "mechanics-i8",
+        size: "the same after kinesic quantize",
+        microseconds: [12_917, 4_435, 640, 935, 870, 231],
+    },
+];
+const COMPONENTS: [Workload; 1] = [Workload {
+    name: "components",
+    size: "23 joints, 4140 multiply-adds",
+    microseconds: [25_290, 8_420, 381, 435, 328, 131],
+}];
+const FACE: [Workload; 1] =
+    [Workload { name: "face", size: "12 clusters, 10 hidden units", microseconds: [7_578, 2_630, 141, 163, 123, 47] }];
