@@ -151,7 +151,7 @@ impl Keyframes {
     /// Keyframes that are known, as a pack holds them.
     pub fn new(rig: &Rig, parts: Vec<f64>, rotations: Vec<UnitQuaternion<f64>>) -> Self {
         let at = |pose: &[UnitQuaternion<f64>]| rig.skeleton.pose_positions(&Vector3::zeros(), pose);
-        let postures = rotations.chunks_exact(rig.joints()).flat_map(at).flat_map(|p| <[f64; 3]>::from(p)).collect();
+        let postures = rotations.chunks_exact(rig.joints()).flat_map(at).flat_map(<[f64; 3]>::from).collect();
         Self { parts, rotations, postures }
     }
 
@@ -210,13 +210,13 @@ impl Keyframes {
         // best[frame]: least cost with this keyframe there; from[k][frame]: where the one before is.
         let mut best: Vec<f64> = (0..frames).map(|frame| if frame == 0 { 0.0 } else { f64::INFINITY }).collect();
         let mut from = vec![vec![0; frames]; count];
-        for k in 1..count {
+        for (k, from) in from.iter_mut().enumerate().skip(1) {
             let (mut least, mut place) = (f64::INFINITY, 0);
             let before = best.clone();
             for frame in 0..frames {
                 let free = frame >= k && frame + count <= frames + k;
                 best[frame] = if free && least.is_finite() { least + cost(k, frame) } else { f64::INFINITY };
-                from[k][frame] = place;
+                from[frame] = place;
                 if before[frame] < least {
                     (least, place) = (before[frame], frame);
                 }

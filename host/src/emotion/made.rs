@@ -87,7 +87,7 @@ pub fn sized(attributes: usize, [keys, components, units]: Size) -> (EmotionMode
         rank_bias: rank_bias.collect(),
         rank,
         reference: cycles[0].reference.clone(),
-        parts: (0..KEYS).map(|key| key as f64 / (KEYS - 1) as f64).collect(),
+        parts: (0..keys).map(|key| key as f64 / (keys - 1) as f64).collect(),
         velocity_scale: 1.0,
     };
     (model, rig)
