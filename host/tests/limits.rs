@@ -281,7 +281,7 @@ fn every_refusal_names_place_cause_and_next_step() {
         ("\"waist\"", "3", &["spine", "found 3", "name of a robot joint"]),
         ("\"waist\"", "\"wais\"", &["spine", "no joint 'wais'", "did you mean 'waist'"]),
         ("\"waist\"", "\"l_grip\"", &["spine", "l_grip", "follows 'l_wrist'", "map 'l_wrist' instead"]),
-        ("\"waist\"", "\"l_elbow\"", &["l_elbow", "belongs to"]),
+        ("\"l_roll\", \"l_yaw\"", "\"l_roll\", \"l_roll\"", &["l_roll", "belongs to 'l_shoulder'"]),
         ("\"waist\"", "[]", &["spine", "no robot joint"]),
         ("spine =", "spin =", &["spin", "did you mean 'Spine'"]),
         ("spine =", "LeftArm =", &["LeftArm", "already"]),
