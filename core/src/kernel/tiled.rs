@@ -2,6 +2,8 @@
 
 use core::num::NonZeroUsize;
 
+use kinesic_kernel_arch::column_tile;
+
 use crate::model::{LoadError, Pack};
 
 /// Rows of one tile.
@@ -40,11 +42,7 @@ impl<'a> Tiled<'a> {
     pub fn multiply_add(&self, x: &[f32], y: &mut [f32]) {
         for (tile, y) in self.tiles.chunks_exact(self.columns.get()).zip(y.chunks_mut(ROWS)) {
             let mut sum = [0.0f32; ROWS];
-            for (weights, x) in tile.iter().zip(x) {
-                for (sum, weight) in sum.iter_mut().zip(weights) {
-                    *sum += weight * x;
-                }
-            }
+            column_tile(tile, x, &mut sum);
             for (y, sum) in y.iter_mut().zip(sum) {
                 *y += sum;
             }
