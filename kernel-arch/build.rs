@@ -12,10 +12,13 @@ const HELIUM: [&str; 3] = ["cortex-m52", "cortex-m55", "cortex-m85"];
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-env-changed=CARGO_ENCODED_RUSTFLAGS");
+    let target = var("TARGET").unwrap_or_default();
+    if target.starts_with("thumbv6m") {
+        println!("cargo::rustc-cfg=kinesic_narrow_multiply");
+    }
     if var("CARGO_FEATURE_ASM").is_err() {
         return;
     }
-    let target = var("TARGET").unwrap_or_default();
     let flags = var("CARGO_ENCODED_RUSTFLAGS").unwrap_or_default();
     let cpu =
         flags.split('\x1f').filter_map(|flag| flag.split_once("target-cpu=")).next_back().map_or("", |(_, cpu)| cpu);

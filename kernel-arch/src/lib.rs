@@ -46,3 +46,14 @@ pub use vfp::column_tile;
 pub const fn pack_weights([c0, c1, c2, c3]: [i8; 4]) -> u32 {
     u32::from_le_bytes([c0 as u8, c2 as u8, c1 as u8, c3 as u8])
 }
+
+/// `w * x / 2^16`, rounded down: SMULW on ARMv7E-M.
+#[cfg(not(kinesic_narrow_multiply))]
+#[inline(always)]
+pub fn scale16(w: i16, x: i32) -> i32 {
+    ((i64::from(w) * i64::from(x)) >> 16) as i32
+}
+
+/// `w * x / 2^16`, rounded down, in two products of 32 bits: the core has no wider ones.
+#[cfg(kinesic_narrow_multiply)]
+pub use portable::scale16;

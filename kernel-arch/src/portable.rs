@@ -28,6 +28,14 @@ pub fn column_tile(weights: &[[f32; 8]], x: &[f32], sums: &mut [f32; 8]) {
     *sums = sum;
 }
 
+/// See [`crate::scale16`], from two products of 32 bits.
+#[inline(always)]
+pub fn scale16(w: i16, x: i32) -> i32 {
+    let w = i32::from(w);
+    // At most 2^15 * 2^16 in size: neither product can wrap.
+    (x >> 16) * w + (((x & 0xffff) * w) >> 16)
+}
+
 #[inline(always)]
 fn row(word: u32, [x0, x1, x2, x3]: [i32; 4], sum: i32) -> i32 {
     let [c0, c2, c1, c3] = word.to_le_bytes().map(|byte| i32::from(byte as i8));
@@ -71,6 +79,18 @@ mod tests {
             for row in 0..4 {
                 let exact: i64 = (0..columns).map(|c| i64::from(rows[row][c]) * i64::from(x[c])).sum();
                 assert_eq!(sums[row], (i64::from(before[row]) + exact) as i32, "row {row} of {columns} columns");
+            }
+        }
+    }
+
+    #[test]
+    fn both_ways_to_scale_round_down() {
+        let values = [0, 1, -1, 2, 65_535, 65_536, -65_536, 12_345_678, -12_345_679, i32::MAX, i32::MIN];
+        for w in (i16::MIN..=i16::MAX).step_by(13).chain([i16::MAX]) {
+            for x in values {
+                let exact = (i64::from(w) * i64::from(x)).div_euclid(65_536);
+                assert_eq!(i64::from(scale16(w, x)), exact, "{w} {x}");
+                assert_eq!(i64::from(crate::scale16(w, x)), exact, "{w} {x}");
             }
         }
     }

@@ -40,13 +40,21 @@ impl<'a> Tiled<'a> {
 
     /// `y += W x`. Cost: `rows` (rounded up to 8) x `columns` multiply-adds.
     pub fn multiply_add(&self, x: &[f32], y: &mut [f32]) {
-        for (tile, y) in self.tiles.chunks_exact(self.columns.get()).zip(y.chunks_mut(ROWS)) {
-            let mut sum = [0.0f32; ROWS];
-            column_tile(tile, x, &mut sum);
-            for (y, sum) in y.iter_mut().zip(sum) {
+        for (sums, y) in self.sums(x).zip(y.chunks_mut(ROWS)) {
+            for (y, sum) in y.iter_mut().zip(sums) {
                 *y += sum;
             }
         }
+    }
+
+    /// `W x`, a tile of rows after the other.
+    #[inline]
+    pub fn sums<'x>(&self, x: &'x [f32]) -> impl Iterator<Item = [f32; ROWS]> + use<'a, 'x> {
+        self.tiles.chunks_exact(self.columns.get()).map(move |tile| {
+            let mut sums = [0.0; ROWS];
+            column_tile(tile, x, &mut sums);
+            sums
+        })
     }
 }
 

@@ -1,16 +1,14 @@
 //! The body-mechanics network: from what the body does to the pose that this alone asks for (Boehs 2017, section 3).
 
-use nalgebra::Quaternion;
-
 use super::decouple::{Decoupled, Decoupler, LARGEST_EXPONENT};
-use super::features::{DynamicFeatures, FEATURES, FeatureState, fits};
+use super::features::{DynamicFeatures, FEATURES, FeatureState};
 use super::layers::{FARTHEST, Layers, Precision};
 use crate::model::{LoadError, MechanicsMeta, ModelMeta, Pack};
-use crate::pose::{Pose, unit};
+use crate::pose::Pose;
 
 /// Features -> hidden layer (tanh) -> code (tanh) -> decoder (linear) -> local unit quaternions of all joints but the hips.
 ///
-/// Holds up to `JOINTS` joints, `UNITS` units in a layer and `WINDOW` frames of memory; the weights stay in flash.
+/// Holds up to `JOINTS` joints, `UNITS` units in the hidden layer and the code together (each rounded up to 4) and `WINDOW` frames of memory; the weights stay in flash.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyMechanics<'a, const JOINTS: usize, const UNITS: usize, const WINDOW: usize> {
     meta: MechanicsMeta,
@@ -33,7 +31,6 @@ impl<'a, const JOINTS: usize, const UNITS: usize, const WINDOW: usize> BodyMecha
         let meta = meta.ok_or(LoadError::NoModel { expected: "body mechanics" })?;
         let features = DynamicFeatures::load(pack, &meta, JOINTS, WINDOW)?;
         let (hidden, code) = (meta.hidden as usize, meta.code as usize);
-        fits("UNITS", hidden.max(code), UNITS)?;
         if !meta.gain.is_finite() || !(1..=LARGEST_EXPONENT).contains(&meta.exponent) || hidden == 0 || code == 0 {
             return Err(LoadError::Metadata);
         }
@@ -71,7 +68,7 @@ impl<'a, const JOINTS: usize, const UNITS: usize, const WINDOW: usize> BodyMecha
     /// `B`: the pose that the features ask for. Root and hips are those of `observed`.
     ///
     /// A joint about which the network is undecided (a quaternion of no length) is at rest. Cost:
-    /// [`multiply_adds`](Self::multiply_adds) and a tanh a unit.
+    /// [`multiply_adds`](Self::multiply_adds) and a tanh a unit. RAM: `UNITS` numbers on the stack, 4 B each in f32, 2 B in int8.
     pub fn predict(&self, features: &[f32; FEATURES], observed: &Pose<JOINTS>, mechanics: &mut Pose<JOINTS>) {
         let mut input = [0.0; FEATURES];
         for (((input, feature), mean), scale) in
@@ -79,13 +76,9 @@ impl<'a, const JOINTS: usize, const UNITS: usize, const WINDOW: usize> BodyMecha
         {
             *input = ((feature - mean) * scale).clamp(-FARTHEST, FARTHEST);
         }
-        let mut output = [[0.0f32; 4]; JOINTS];
-        self.layers.apply::<UNITS>(&input, output.as_flattened_mut());
         *mechanics = *observed;
         let joints = self.features.skeleton().joints().saturating_sub(1);
-        for (rotation, [x, y, z, w]) in mechanics.rotations.iter_mut().skip(1).zip(output).take(joints) {
-            *rotation = unit(Quaternion::new(w, x, y, z));
-        }
+        self.layers.apply::<UNITS>(&input, mechanics.rotations.iter_mut().skip(1).take(joints));
     }
 
     /// One frame: features, network, decoupling. Infallible; every loop has a length fixed at load time.

@@ -35,7 +35,7 @@ fn over_a_walk(name: &str, pack_name: &'static str, pack: Vec<u8>, frames: usize
     on_host::<Mechanics>(name, pack_name, pack, &numbers(&rig, &clip, JOINTS))
 }
 
-fn model() -> Result<Vec<u8>, WorkloadError> {
+pub fn model() -> Result<Vec<u8>, WorkloadError> {
     let path = home().parent().unwrap_or(Path::new(".")).join(MODEL);
     std::fs::read(&path).map_err(|source| WorkloadError::Read { path, source })
 }

@@ -2,7 +2,8 @@
 //! stable dynamics. Cost depends on the shape alone, so nothing has to be trained to measure it.
 
 use kinesic_host::clip::Clip;
-use kinesic_host::pack::Provenance;
+use kinesic_host::pack::{PackFile, Provenance};
+use kinesic_host::quantise::to_int16;
 use kinesic_host::rig::Rig;
 use kinesic_host::translate::{BankModel, TimingModel, TranslatorModel};
 use kinesic_workloads::translator::{JOINTS, PerJoint, WholeBody};
@@ -18,6 +19,22 @@ const DRIVES: usize = 8;
 const CHANNELS: usize = 3 * JOINTS;
 
 pub fn per_joint(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
+    let (pack, frames) = made_per_joint(frames);
+    on_host::<PerJoint>(name, "translator.kin", pack, &frames)
+}
+
+/// The same in fixed point.
+pub fn per_joint_fixed(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
+    let (pack, frames) = made_per_joint(frames);
+    on_host::<PerJoint>(name, "translator-i16.kin", fixed(&pack)?, &frames)
+}
+
+fn fixed(pack: &[u8]) -> Result<Vec<u8>, WorkloadError> {
+    let provenance = Provenance { tool: "kinesic-firmware-sim".to_owned(), seed: SEED, ..Provenance::default() };
+    Ok(to_int16(&PackFile::from_bytes(pack), &provenance)?)
+}
+
+fn made_per_joint(frames: usize) -> (Vec<u8>, Vec<Vec<f32>>) {
     let mut random = ChaCha8Rng::seed_from_u64(SEED);
     let mut block = || -> [f64; 16] {
         let [a, b, c, d] = stable(&mut random);
@@ -28,11 +45,21 @@ pub fn per_joint(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
         block
     };
     let bank = (0..JOINTS).map(|_| (0..ORDER / 2).map(|_| block()).collect()).collect();
-    let (pack, frames) = pack(BankModel::PerJoint(bank), Vec::new(), frames);
-    on_host::<PerJoint>(name, "translator.kin", pack, &frames)
+    pack(BankModel::PerJoint(bank), Vec::new(), frames)
 }
 
 pub fn whole_body(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
+    let (pack, frames) = made_whole_body(frames);
+    on_host::<WholeBody>(name, "translator-body.kin", pack, &frames)
+}
+
+/// The same in fixed point.
+pub fn whole_body_fixed(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
+    let (pack, frames) = made_whole_body(frames);
+    on_host::<WholeBody>(name, "translator-body-i16.kin", fixed(&pack)?, &frames)
+}
+
+fn made_whole_body(frames: usize) -> (Vec<u8>, Vec<Vec<f32>>) {
     let mut random = ChaCha8Rng::seed_from_u64(SEED);
     let transition = (0..ORDER / 2).map(|_| stable(&mut random)).collect();
     let mut matrix = |rows: usize, columns: usize, size: f64| -> Vec<f64> {
@@ -45,8 +72,7 @@ pub fn whole_body(name: &str, frames: usize) -> Result<Prepared, WorkloadError> 
         output: matrix(CHANNELS, ORDER + DRIVES, 0.002),
     };
     let states = matrix(1, ORDER + DRIVES, 0.01);
-    let (pack, frames) = pack(bank, states, frames);
-    on_host::<WholeBody>(name, "translator-body.kin", pack, &frames)
+    pack(bank, states, frames)
 }
 
 /// A rotation-scaling block with poles inside the unit circle.

@@ -11,6 +11,8 @@ mod frames;
 pub mod kernel;
 pub mod limit;
 pub mod mechanics;
+pub mod modal;
+pub mod peer;
 pub mod pose;
 pub mod translator;
 

@@ -20,7 +20,7 @@ const UNITS: usize = 24;
 const CODE: usize = 10;
 const COUNT: usize = 8;
 
-pub type Device<'a> = Pipeline<'a, JOINTS, 1024, UNITS, 20, COUNT>;
+pub type Device<'a> = Pipeline<'a, JOINTS, 1024, { UNITS + 12 }, 20, COUNT>;
 pub type State = PipelineState<JOINTS, 1024, 20, COUNT>;
 
 pub const ENGINES: [&str; 6] = [

@@ -1,0 +1,5 @@
+//! Features and network 23-100-300-120 with int8 weights.
+#![no_std]
+#![no_main]
+
+kinesic_image::image!(kinesic_image::workloads::mechanics::Network, "network-i8.kin");
