@@ -114,7 +114,9 @@ fn float<'r, const UNITS: usize>(
     let (biases, _) = decoder.bias.as_chunks::<4>();
     let mut joints = rotations.zip(biases);
     for tile in decoder.weights.sums(second) {
-        for ([x, y, z, w], (rotation, [bias_x, bias_y, bias_z, bias_w])) in tile.as_chunks::<4>().0.iter().zip(&mut joints) {
+        for ([x, y, z, w], (rotation, [bias_x, bias_y, bias_z, bias_w])) in
+            tile.as_chunks::<4>().0.iter().zip(&mut joints)
+        {
             *rotation = unit(Quaternion::new(bias_w + w, bias_x + x, bias_y + y, bias_z + z));
         }
     }

@@ -63,9 +63,24 @@ impl Workload for EmbeddedNn {
 #[inline(always)]
 fn layer(x: &[i8], weights: &[i8], y: &mut [i8]) {
     let (columns, rows) = (x.len() as i32, y.len() as i32);
-    let params = FcParams { input_offset: 0, filter_offset: 0, output_offset: 0, activation: Activation { min: -128, max: 127 } };
+    let params = FcParams {
+        input_offset: 0,
+        filter_offset: 0,
+        output_offset: 0,
+        activation: Activation { min: -128, max: 127 },
+    };
     let scale = PerTensorQuantParams { multiplier: 1 << 30, shift: -8 };
     let dims = |n, c| Dims { n, h: 1, w: 1, c };
     // Refuses nothing here: the slices have the shapes that the dimensions say.
-    let _ = fully_connected_s8(&params, &scale, &dims(1, columns), x, &dims(columns, rows), weights, None, &dims(1, rows), y);
+    let _ = fully_connected_s8(
+        &params,
+        &scale,
+        &dims(1, columns),
+        x,
+        &dims(columns, rows),
+        weights,
+        None,
+        &dims(1, rows),
+        y,
+    );
 }

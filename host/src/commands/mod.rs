@@ -18,6 +18,7 @@ mod mask;
 mod mix;
 mod modulate;
 mod output;
+mod precision;
 mod quantize;
 mod train;
 mod view;

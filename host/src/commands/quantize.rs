@@ -3,15 +3,16 @@
 use std::path::PathBuf;
 
 use kinesic::Pack;
-use kinesic_host::pack::{Metric, PackFile, Provenance};
+use kinesic_host::pack::{Metric, PackFile};
 use kinesic_host::prepare::Source;
-use kinesic_host::quantise::{Difference, QuantiseError, difference, to_int8, to_int16, translated_difference};
+use kinesic_host::quantise::{Difference, difference, translated_difference};
 use kinesic_host::rig::Rig;
 use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
 
 use super::clips::{Reading, clip_paths};
 use super::output::{check_output, command_line, print_json, spinner, write_whole};
+use super::precision::Precision;
 
 /// Store a body-mechanics network as int8 or a translator as int16, for parts without an FPU and with little flash
 ///
@@ -47,31 +48,6 @@ pub struct Args {
     reading: Reading,
 }
 
-/// Number type of a quantised pack.
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-enum Precision {
-    /// int16 coefficients and int32 states: translators
-    I16,
-    /// int8 weights with a scale a row: body mechanics
-    I8,
-}
-
-impl Precision {
-    fn name(self) -> &'static str {
-        match self {
-            Self::I16 => "int16",
-            Self::I8 => "int8",
-        }
-    }
-
-    fn quantise(self, file: &PackFile, provenance: &Provenance) -> Result<Vec<u8>, QuantiseError> {
-        match self {
-            Self::I16 => to_int16(file, provenance),
-            Self::I8 => to_int8(file, provenance),
-        }
-    }
-}
-
 #[derive(Serialize)]
 struct Summary {
     out: String,
@@ -90,11 +66,17 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let has_translator =
         file.pack().into_diagnostic()?.metadata().models.iter().any(|model| model.translator().is_some());
     let precision = args.precision.unwrap_or(if has_translator { Precision::I16 } else { Precision::I8 });
+    if precision == Precision::F32 {
+        return Err(miette!(
+            help = "expected i16 for a translator, i8 for body mechanics",
+            "--precision f32: the pack is f32"
+        ));
+    }
     let name = precision.name();
     provenance.notes.push(format!("{name}, from a pack that was made with: {}", provenance.command));
     provenance.command = command_line();
     let bar = spinner();
-    let rounded = PackFile::from_bytes(&precision.quantise(&file, &provenance)?);
+    let rounded = PackFile::from_bytes(&precision.of(file.bytes().to_vec(), &provenance)?);
     let (before, after) = (file.pack().into_diagnostic()?, rounded.pack().into_diagnostic()?);
     let mut error = None;
     let mut count = 0;
@@ -109,7 +91,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
         provenance.metrics.push(metric("frames", found.frames as f64));
         error = Some(found);
     }
-    let bytes = precision.quantise(&file, &provenance)?;
+    let bytes = precision.of(file.bytes().to_vec(), &provenance)?;
     bar.finish_and_clear();
     write_whole(&args.out, &bytes)?;
     let summary = Summary {
@@ -151,8 +133,8 @@ fn measure(
         clips.push(rig.poses(&source.on_rig(&rig, fps).into_diagnostic()?));
     }
     let found = match precision {
-        Precision::I16 => translated_difference(before, after, &clips),
         Precision::I8 => difference(before, after, &clips),
+        _ => translated_difference(before, after, &clips),
     };
     found.into_diagnostic()
 }
