@@ -137,14 +137,42 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// `x` in units of `2^-bits`, cut towards zero and held; 0 for what is not a number.
+/// `x` in units of `2^-bits`, cut towards zero and held; 0 for what is not a number. By shifts of the mantissa: a product in
+/// software costs more than the whole of it.
+#[inline]
 pub fn to_fixed(x: f32, bits: u32, largest: i32) -> i32 {
-    ((x * (1u32 << bits) as f32) as i32).clamp(-largest, largest)
+    if cfg!(target_abi = "eabihf") || cfg!(not(any(target_arch = "arm", target_arch = "riscv32"))) {
+        return ((x * (1u32 << bits) as f32) as i32).clamp(-largest, largest);
+    }
+    shifted(x, bits, largest)
 }
 
-/// An output in m.
+/// [`to_fixed`] without a product, bit for bit.
+fn shifted(x: f32, bits: u32, largest: i32) -> i32 {
+    let word = x.to_bits();
+    let exponent = (word >> 23) & 0xff;
+    let mantissa = word & 0x007f_ffff;
+    if exponent == 0xff && mantissa != 0 {
+        return 0;
+    }
+    let mantissa = (mantissa | 0x0080_0000) as i32;
+    // x = mantissa * 2^(exponent - 150).
+    let shift = exponent as i32 + bits as i32 - 150;
+    let size = match shift {
+        // What is not normal is far below a unit.
+        ..=-24 => 0,
+        -23..=-1 => mantissa >> -shift,
+        0..=6 => (mantissa << shift).min(largest),
+        _ => largest,
+    };
+    if word >> 31 == 0 { size } else { -size }
+}
+
+/// An output in m, exact to f32's rounding of the integer.
+#[inline]
 pub fn from_output(y: i32) -> f32 {
-    y as f32 * (1.0 / (1u32 << OUTPUT_BITS) as f32)
+    // A power of two less in the exponent: a product in software costs more.
+    if y == 0 { 0.0 } else { f32::from_bits((y as f32).to_bits().wrapping_sub(OUTPUT_BITS << 23)) }
 }
 
 #[cfg(test)]
@@ -215,6 +243,21 @@ mod tests {
         assert!(!is_bounded(&shifted));
         shifted[17] = -1;
         assert!(!is_bounded(&shifted));
+    }
+
+    #[test]
+    fn conversions_are_the_products_that_they_stand_for() {
+        let mut word = 1u32;
+        for _ in 0..200_000 {
+            word = word.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            let x = f32::from_bits(word);
+            let product = ((x * 16_777_216.0) as i32).clamp(-LARGEST_INPUT, LARGEST_INPUT);
+            assert_eq!(shifted(x, INPUT_BITS, LARGEST_INPUT), product, "{x}");
+            let near = (word >> 8) as f32 / 16_777_216.0 * 40.0 - 20.0;
+            let product = ((near * 16_777_216.0) as i32).clamp(-LARGEST_INPUT, LARGEST_INPUT);
+            assert_eq!(shifted(near, INPUT_BITS, LARGEST_INPUT), product, "{near}");
+            assert_eq!(from_output(word as i32), word as i32 as f32 / 4_194_304.0);
+        }
     }
 
     #[test]

@@ -139,11 +139,12 @@ static TANH: [i16; 257] = tanh_table();
 /// `tanh(x)` in fixed point: `x` in units of 2^-12, the result in units of 2^-13. A table of 257 values and a straight line
 /// between them; absolute error below 2.5e-4 over all inputs; odd, rising. Cost: a multiply.
 pub fn tanh_fixed(x: i32) -> i16 {
-    let size = x.unsigned_abs();
+    // From 8 on the table is 1: the last step holds.
+    let size = x.unsigned_abs().min((8 << PRE_ACTIVATION_BITS) - 1);
     let at = (size >> STEP_BITS) as usize;
     let part = (size & ((1 << STEP_BITS) - 1)) as i32;
     let value = |at: usize| i32::from(TANH.get(at).copied().unwrap_or(LARGEST_ACTIVATION));
-    let (low, high) = (value(at), value(at.saturating_add(1)));
+    let (low, high) = (value(at), value(at + 1));
     let y = low + (((high - low) * part + (1 << (STEP_BITS - 1))) >> STEP_BITS);
     (if x < 0 { -y } else { y }) as i16
 }

@@ -4,7 +4,7 @@ use nalgebra::{Quaternion, UnitQuaternion};
 
 use super::features::{FEATURES, fits};
 use crate::kernel::{Activations, LARGEST_ACTIVATION, Quantised, ROWS, TILE, Tiled, tanh};
-use crate::model::{LoadError, Pack, TensorType};
+use crate::model::{LoadError, Numbers, Pack, TensorType};
 use crate::pose::unit;
 
 /// Features this many deviations away from the mean are cut: further away the network knows nothing.
@@ -43,10 +43,18 @@ pub struct Layer<'a> {
 
 impl<'a> Layers<'a> {
     /// Layers of `hidden`, `code` and `outputs` rows; `units` is the capacity for the units of the first two.
-    pub fn load(pack: &Pack<'a>, [hidden, code, outputs]: [usize; 3], units: usize) -> Result<Self, LoadError> {
+    pub fn load<N: Numbers>(
+        pack: &Pack<'a>,
+        [hidden, code, outputs]: [usize; 3],
+        units: usize,
+    ) -> Result<Self, LoadError> {
         let float = |names, rows, columns| Layer::load(pack, names, rows, columns);
         let integer = |names, rows, columns| Quantised::load(pack, names, rows, columns);
-        if pack.number("mechanics/hidden")? == TensorType::I8 {
+        let found = pack.number("mechanics/hidden")?;
+        if !matches!((found, N::FLOAT, N::INTEGER), (TensorType::F32, true, _) | (TensorType::I8, _, true)) {
+            return Err(LoadError::NumberType { tensor: "mechanics/hidden", found });
+        }
+        if N::INTEGER && (found == TensorType::I8 || !N::FLOAT) {
             // The integer kernel reads whole groups of activations.
             let groups = hidden.div_ceil(TILE).saturating_add(code.div_ceil(TILE));
             fits("UNITS", groups.saturating_mul(TILE), units)?;
@@ -87,14 +95,16 @@ impl<'a> Layers<'a> {
     }
 
     /// From features, normalised and cut at [`FARTHEST`], to rotations, one for every four outputs.
-    pub fn apply<'r, const UNITS: usize>(
+    pub fn apply<'r, const UNITS: usize, N: Numbers>(
         &self,
         input: &[f32; FEATURES],
         rotations: impl Iterator<Item = &'r mut UnitQuaternion<f32>>,
     ) {
         match self {
-            Self::Float(layers) => float::<UNITS>(layers, input, rotations),
-            Self::Integer(layers) => integer::<UNITS>(layers, input, rotations),
+            // Guards are constant: code of number types that N leaves out is not linked.
+            Self::Float(layers) if N::FLOAT => float::<UNITS>(layers, input, rotations),
+            Self::Integer(layers) if N::INTEGER => integer::<UNITS>(layers, input, rotations),
+            _ => {}
         }
     }
 }

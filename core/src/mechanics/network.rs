@@ -1,21 +1,24 @@
 //! The body-mechanics network: from what the body does to the pose that this alone asks for (Boehs 2017, section 3).
 
+use core::marker::PhantomData;
+
 use super::decouple::{Decoupled, Decoupler, LARGEST_EXPONENT};
 use super::features::{DynamicFeatures, FEATURES, FeatureState};
 use super::layers::{FARTHEST, Layers, Precision};
-use crate::model::{LoadError, MechanicsMeta, ModelMeta, Pack};
+use crate::model::{AnyNumbers, LoadError, MechanicsMeta, ModelMeta, Numbers, Pack};
 use crate::pose::Pose;
 
 /// Features -> hidden layer (tanh) -> code (tanh) -> decoder (linear) -> local unit quaternions of all joints but the hips.
 ///
 /// Holds up to `JOINTS` joints, `UNITS` units in the hidden layer and the code together (each rounded up to 4) and `WINDOW` frames of memory; the weights stay in flash.
 #[derive(Clone, Copy, Debug)]
-pub struct BodyMechanics<'a, const JOINTS: usize, const UNITS: usize, const WINDOW: usize> {
+pub struct BodyMechanics<'a, const JOINTS: usize, const UNITS: usize, const WINDOW: usize, N = AnyNumbers> {
     meta: MechanicsMeta,
     features: DynamicFeatures<'a>,
     mean: &'a [f32],
     inverse_deviation: &'a [f32],
     layers: Layers<'a>,
+    numbers: PhantomData<N>,
     /// Activity index.
     pub decoupler: Decoupler,
 }
@@ -24,8 +27,17 @@ pub struct BodyMechanics<'a, const JOINTS: usize, const UNITS: usize, const WIND
 pub type MechanicsState<const JOINTS: usize, const WINDOW: usize> = FeatureState<JOINTS, WINDOW>;
 
 impl<'a, const JOINTS: usize, const UNITS: usize, const WINDOW: usize> BodyMechanics<'a, JOINTS, UNITS, WINDOW> {
-    /// The body mechanics of a pack, after every check that makes [`step`](Self::step) infallible.
+    /// The body mechanics of a pack in any number type, after every check that makes [`step`](Self::step) infallible.
     pub fn load(pack: &Pack<'a>) -> Result<Self, LoadError> {
+        Self::load_numbers(pack)
+    }
+}
+
+impl<'a, const JOINTS: usize, const UNITS: usize, const WINDOW: usize, N: Numbers>
+    BodyMechanics<'a, JOINTS, UNITS, WINDOW, N>
+{
+    /// [`load`](BodyMechanics::load) for the number types `N`: `Integers` links no f32 network, `Floats` no int8 one.
+    pub fn load_numbers(pack: &Pack<'a>) -> Result<Self, LoadError> {
         let models = pack.metadata().models;
         let meta = models.iter().find_map(ModelMeta::mechanics);
         let meta = meta.ok_or(LoadError::NoModel { expected: "body mechanics" })?;
@@ -40,7 +52,8 @@ impl<'a, const JOINTS: usize, const UNITS: usize, const WINDOW: usize> BodyMecha
             features,
             mean: pack.slice("mechanics/feature_mean", FEATURES)?,
             inverse_deviation: pack.slice("mechanics/feature_inverse_deviation", FEATURES)?,
-            layers: Layers::load(pack, [hidden, code, outputs], UNITS)?,
+            layers: Layers::load::<N>(pack, [hidden, code, outputs], UNITS)?,
+            numbers: PhantomData,
             decoupler: Decoupler { gain: meta.gain, exponent: meta.exponent },
         })
     }
@@ -78,7 +91,7 @@ impl<'a, const JOINTS: usize, const UNITS: usize, const WINDOW: usize> BodyMecha
         }
         *mechanics = *observed;
         let joints = self.features.skeleton().joints().saturating_sub(1);
-        self.layers.apply::<UNITS>(&input, mechanics.rotations.iter_mut().skip(1).take(joints));
+        self.layers.apply::<UNITS, N>(&input, mechanics.rotations.iter_mut().skip(1).take(joints));
     }
 
     /// One frame: features, network, decoupling. Infallible; every loop has a length fixed at load time.

@@ -2,20 +2,23 @@
 
 use super::fixed::Fixed;
 use super::float::Float;
-use crate::model::{LoadError, ModelMeta, Pack, TensorType, TranslatorMeta};
+use core::marker::PhantomData;
+
+use crate::model::{AnyNumbers, LoadError, ModelMeta, Numbers, Pack, TensorType, TranslatorMeta};
 use crate::pose::Skeleton;
 
 /// A style translator for up to `JOINTS` joints and `STATES` filter states, borrowed from a pack.
 ///
 /// Coefficients are f32, or int16 with int32 states (`kinesic quantize --precision i16`): the pack decides. `STATES` counts two for every 2 x 2 block, plus, in the whole-body form, one for every principal coordinate.
 #[derive(Clone, Copy, Debug)]
-pub struct Translator<'a, const JOINTS: usize, const STATES: usize> {
+pub struct Translator<'a, const JOINTS: usize, const STATES: usize, N = AnyNumbers> {
     pub(super) meta: TranslatorMeta<'a>,
     pub(super) skeleton: Skeleton<'a>,
     /// Heading-local input: mean, m, and 1 / deviation, 1/m. Row 0 is `[travel x, height, travel z]` of the root.
     pub(super) mean: &'a [[f32; 3]],
     pub(super) inverse_deviation: &'a [[f32; 3]],
     pub(super) linear: Linear<'a>,
+    numbers: PhantomData<N>,
 }
 
 /// Everything between the normalised input and the output, in the pack's number type.
@@ -26,8 +29,15 @@ pub(super) enum Linear<'a> {
 }
 
 impl<'a, const JOINTS: usize, const STATES: usize> Translator<'a, JOINTS, STATES> {
-    /// The translator of a pack, after every check that makes [`step`](Self::step) infallible.
+    /// The translator of a pack in any number type, after every check that makes [`step`](Self::step) infallible.
     pub fn load(pack: &Pack<'a>) -> Result<Self, LoadError> {
+        Self::load_numbers(pack)
+    }
+}
+
+impl<'a, const JOINTS: usize, const STATES: usize, N: Numbers> Translator<'a, JOINTS, STATES, N> {
+    /// [`load`](Translator::load) for the number types `N`: `Translator::<J, S, Integers>::load_numbers(&pack)` links no f32 bank.
+    pub fn load_numbers(pack: &Pack<'a>) -> Result<Self, LoadError> {
         let meta = pack
             .metadata()
             .models
@@ -40,8 +50,9 @@ impl<'a, const JOINTS: usize, const STATES: usize> Translator<'a, JOINTS, STATES
         let states = 2 * meta.blocks as usize;
         fits("STATES", states.saturating_add(meta.drives as usize), STATES)?;
         let linear = match pack.number("translate/direct")? {
-            TensorType::I16 => Linear::Fixed(Fixed::load(pack, &meta, joints)?),
-            _ => Linear::Float(Float::load(pack, &meta, joints)?),
+            TensorType::F32 if N::FLOAT => Linear::Float(Float::load(pack, &meta, joints)?),
+            TensorType::I16 if N::INTEGER => Linear::Fixed(Fixed::load(pack, &meta, joints)?),
+            found => return Err(LoadError::NumberType { tensor: "translate/direct", found }),
         };
         Ok(Self {
             meta,
@@ -49,6 +60,7 @@ impl<'a, const JOINTS: usize, const STATES: usize> Translator<'a, JOINTS, STATES
             mean: pack.slice("translate/mean", joints)?,
             inverse_deviation: pack.slice("translate/inverse_deviation", joints)?,
             linear,
+            numbers: PhantomData,
         })
     }
 

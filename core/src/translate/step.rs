@@ -4,9 +4,10 @@ use nalgebra::Vector3;
 
 use super::model::Linear;
 use super::{Timing, Translator, TranslatorState};
+use crate::model::Numbers;
 use crate::pose::{Heading, Pose, World, forward, local_positions, nlerp, solve};
 
-impl<const JOINTS: usize, const STATES: usize> Translator<'_, JOINTS, STATES> {
+impl<const JOINTS: usize, const STATES: usize, N: Numbers> Translator<'_, JOINTS, STATES, N> {
     /// Puts the filters where holding the pose of the first frame for ever would have brought them.
     ///
     /// Without it they start from zero, as if the mean pose of the training had been held; then the first half second
@@ -18,8 +19,9 @@ impl<const JOINTS: usize, const STATES: usize> Translator<'_, JOINTS, STATES> {
         state.heading = state.heading.follow(&self.skeleton, &world);
         let input = self.normalised(&self.local(state.heading, Vector3::zeros(), &world));
         match &self.linear {
-            Linear::Float(linear) => linear.settle(&input, state.view()),
-            Linear::Fixed(linear) => linear.settle(&input, state.view()),
+            Linear::Float(linear) if N::FLOAT => linear.settle(&input, state.view()),
+            Linear::Fixed(linear) if N::INTEGER => linear.settle(&input, state.view()),
+            _ => {}
         }
         state.last_root = Some(source.root);
     }
@@ -46,14 +48,18 @@ impl<const JOINTS: usize, const STATES: usize> Translator<'_, JOINTS, STATES> {
         let input = self.normalised(&local);
         let mut output = [[0.0; 3]; JOINTS];
         let log2 = match &self.linear {
-            Linear::Float(linear) => linear.step(&input, state.view(), &mut output),
-            Linear::Fixed(linear) => linear.step(&input, state.view(), &mut output),
+            // Guards are constant: code of number types that N leaves out is not linked.
+            Linear::Float(linear) if N::FLOAT => linear.step(&input, state.view(), &mut output),
+            Linear::Fixed(linear) if N::INTEGER => linear.step(&input, state.view(), &mut output),
+            _ => 0.0,
         };
 
         let targets = self.targets(state, heading, source.root, &local, &output, &world);
         solve(&self.skeleton, source, &world, &targets, styled);
         for ((styled, source), weight) in styled.rotations.iter_mut().zip(&source.rotations).zip(&state.controls.mask) {
-            *styled = nlerp(source, styled, *weight);
+            if *weight != 1.0 {
+                *styled = nlerp(source, styled, *weight);
+            }
         }
         Timing { duration: exp2(log2) }
     }

@@ -3,7 +3,7 @@
 
 use kinesic::Pack;
 use kinesic::mechanics::FEATURES;
-use kinesic::model::{LoadError, ModelMeta};
+use kinesic::model::{Floats, Integers, LoadError, ModelMeta, Numbers};
 use kinesic_host::pack::{PackFile, PackWriter, Provenance};
 use kinesic_host::quantise::to_int8;
 use kinesic_host::rig::Rig;
@@ -56,21 +56,26 @@ fn pack() -> Result<PackFile, WorkloadError> {
     Ok(PackFile::from_bytes(&out.finish(&provenance())))
 }
 
-fn over_a_walk(name: &str, pack_name: &'static str, pack: &PackFile, frames: usize) -> Result<Prepared, WorkloadError> {
+fn over_a_walk<N: Numbers>(
+    name: &str,
+    pack_name: &'static str,
+    pack: &PackFile,
+    frames: usize,
+) -> Result<Prepared, WorkloadError> {
     let refused = |_| WorkloadError::Refused { name: name.to_owned() };
     let view: Pack = pack.pack().map_err(refused)?;
     let rig = Rig::from_pack(&view)?;
     let clip = made::walk_on(&rig.skeleton, frames, SEED);
-    on_host::<Network>(name, pack_name, pack.bytes().to_vec(), &numbers(&rig, &clip, JOINTS))
+    on_host::<Network<N>>(name, pack_name, pack.bytes().to_vec(), &numbers(&rig, &clip, JOINTS))
 }
 
 pub fn f32(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
-    over_a_walk(name, "network.kin", &pack()?, frames)
+    over_a_walk::<Floats>(name, "network.kin", &pack()?, frames)
 }
 
 pub fn i8(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
     let rounded = PackFile::from_bytes(&to_int8(&pack()?, &provenance())?);
-    over_a_walk(name, "network-i8.kin", &rounded, frames)
+    over_a_walk::<Integers>(name, "network-i8.kin", &rounded, frames)
 }
 
 /// The same weights for embedded-nn, row-major, one scale a layer.

@@ -6,7 +6,7 @@ use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_host::quantise::to_int16;
 use kinesic_host::rig::Rig;
 use kinesic_host::translate::{BankModel, TimingModel, TranslatorModel};
-use kinesic_workloads::translator::{JOINTS, PerJoint, WholeBody};
+use kinesic_workloads::translator::{JOINTS, PerJoint, PerJointFixed, WholeBody, WholeBodyFixed};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 
@@ -26,7 +26,7 @@ pub fn per_joint(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
 /// The same in fixed point.
 pub fn per_joint_fixed(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
     let (pack, frames) = made_per_joint(frames);
-    on_host::<PerJoint>(name, "translator-i16.kin", fixed(&pack)?, &frames)
+    on_host::<PerJointFixed>(name, "translator-i16.kin", fixed(&pack)?, &frames)
 }
 
 fn fixed(pack: &[u8]) -> Result<Vec<u8>, WorkloadError> {
@@ -56,7 +56,7 @@ pub fn whole_body(name: &str, frames: usize) -> Result<Prepared, WorkloadError> 
 /// The same in fixed point.
 pub fn whole_body_fixed(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
     let (pack, frames) = made_whole_body(frames);
-    on_host::<WholeBody>(name, "translator-body-i16.kin", fixed(&pack)?, &frames)
+    on_host::<WholeBodyFixed>(name, "translator-body-i16.kin", fixed(&pack)?, &frames)
 }
 
 fn made_whole_body(frames: usize) -> (Vec<u8>, Vec<Vec<f32>>) {

@@ -18,6 +18,7 @@ pub mod translator;
 
 pub use digest::Digest;
 pub use frames::Frames;
+pub use kinesic::model::{Floats, Integers};
 
 /// The pack does not fit the workload's capacities, or its check failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,6 +1,9 @@
 //! Body mechanics of a pose: features, network, decoupling, through the very `BodyMechanics` of the product.
 
+use core::marker::PhantomData;
+
 use kinesic::mechanics::{BodyMechanics, Decoupled, MechanicsState};
+use kinesic::model::Numbers;
 use kinesic::{Pack, Pose};
 
 use crate::{Digest, Refused, Workload, pose};
@@ -14,13 +17,13 @@ pub const PAPER_UNITS: usize = 400;
 /// A third of a second at 60 frames a second.
 pub const WINDOW: usize = 20;
 
-/// `BodyMechanics::step` with the capacities of `models/mechanics.kin`.
+/// `BodyMechanics::step` with the capacities of `models/mechanics.kin`, in the number types `N`.
 #[derive(Clone, Copy, Debug)]
-pub struct Mechanics;
+pub struct Mechanics<N>(PhantomData<N>);
 
 /// Features and network alone, without decoupling, at the size of Boehs 2017: 100 units, then a code of 300.
 #[derive(Clone, Copy, Debug)]
-pub struct Network;
+pub struct Network<N>(PhantomData<N>);
 
 /// RAM of body mechanics and its caller: the state, the pose that comes in and the parts that go out.
 #[derive(Clone, Debug)]
@@ -31,13 +34,13 @@ pub struct Running {
 }
 
 /// Takes an input frame as [`pose::load`] does.
-impl Workload for Mechanics {
-    type Model<'p> = BodyMechanics<'p, JOINTS, UNITS, WINDOW>;
+impl<N: Numbers> Workload for Mechanics<N> {
+    type Model<'p> = BodyMechanics<'p, JOINTS, UNITS, WINDOW, N>;
     type State = Running;
 
     fn open(pack: &[u8]) -> Result<Self::Model<'_>, Refused> {
         let pack = Pack::load(pack).map_err(|_| Refused)?;
-        BodyMechanics::load(&pack).map_err(|_| Refused)
+        BodyMechanics::load_numbers(&pack).map_err(|_| Refused)
     }
 
     fn power_on(_: &Self::Model<'_>) -> Self::State {
@@ -63,13 +66,13 @@ impl Workload for Mechanics {
     }
 }
 
-impl Workload for Network {
-    type Model<'p> = BodyMechanics<'p, JOINTS, PAPER_UNITS, WINDOW>;
+impl<N: Numbers> Workload for Network<N> {
+    type Model<'p> = BodyMechanics<'p, JOINTS, PAPER_UNITS, WINDOW, N>;
     type State = Running;
 
     fn open(pack: &[u8]) -> Result<Self::Model<'_>, Refused> {
         let pack = Pack::load(pack).map_err(|_| Refused)?;
-        BodyMechanics::load(&pack).map_err(|_| Refused)
+        BodyMechanics::load_numbers(&pack).map_err(|_| Refused)
     }
 
     fn power_on(_: &Self::Model<'_>) -> Self::State {

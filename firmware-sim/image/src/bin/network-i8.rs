@@ -2,4 +2,7 @@
 #![no_std]
 #![no_main]
 
-kinesic_image::image!(kinesic_image::workloads::mechanics::Network, "network-i8.kin");
+kinesic_image::image!(
+    kinesic_image::workloads::mechanics::Network<kinesic_image::workloads::Integers>,
+    "network-i8.kin"
+);

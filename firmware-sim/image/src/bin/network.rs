@@ -2,4 +2,4 @@
 #![no_std]
 #![no_main]
 
-kinesic_image::image!(kinesic_image::workloads::mechanics::Network, "network.kin");
+kinesic_image::image!(kinesic_image::workloads::mechanics::Network<kinesic_image::workloads::Floats>, "network.kin");

@@ -2,4 +2,4 @@
 #![no_std]
 #![no_main]
 
-kinesic_image::image!(kinesic_image::workloads::translator::PerJoint, "translator-i16.kin");
+kinesic_image::image!(kinesic_image::workloads::translator::PerJointFixed, "translator-i16.kin");
