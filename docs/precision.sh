@@ -4,7 +4,8 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 data=${KINESIC_DATA:-../shared/data}
-kinesic=${KINESIC:-target/release/kinesic}
+cargo build --release --locked -q -p kinesic-host
+kinesic=${CARGO_TARGET_DIR:-target}/release/kinesic
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 

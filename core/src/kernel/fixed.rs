@@ -24,8 +24,8 @@ pub const TRANSITION_BITS: u32 = 15;
 /// States are held below `2^29` in size.
 pub const STATE_BITS: u32 = 29;
 
-/// Fraction bits of an output in m: a quarter of a micrometre.
-pub const OUTPUT_BITS: u32 = 22;
+/// Fraction bits of an output in m: 4 micrometres, so that the largest sum that any input could give fits.
+pub const OUTPUT_BITS: u32 = 18;
 
 /// Largest sum of the sizes of a row's coefficients: with values below 2^29 the row's sum stays within 2^29.
 pub const LARGEST_ROW: u32 = 1 << 16;
@@ -256,7 +256,7 @@ mod tests {
             let near = (word >> 8) as f32 / 16_777_216.0 * 40.0 - 20.0;
             let product = ((near * 16_777_216.0) as i32).clamp(-LARGEST_INPUT, LARGEST_INPUT);
             assert_eq!(shifted(near, INPUT_BITS, LARGEST_INPUT), product, "{near}");
-            assert_eq!(from_output(word as i32), word as i32 as f32 / 4_194_304.0);
+            assert_eq!(from_output(word as i32), word as i32 as f32 / 262_144.0);
         }
     }
 
@@ -265,6 +265,6 @@ mod tests {
         assert_eq!(to_fixed(f32::NAN, INPUT_BITS, LARGEST_INPUT), 0);
         assert_eq!(to_fixed(f32::INFINITY, INPUT_BITS, LARGEST_INPUT), LARGEST_INPUT);
         assert_eq!(to_fixed(-1.0, INPUT_BITS, LARGEST_INPUT), -(1 << INPUT_BITS));
-        assert_eq!(from_output(1 << 22), 1.0);
+        assert_eq!(from_output(1 << 18), 1.0);
     }
 }

@@ -7,7 +7,7 @@ use crate::kernel::{
 };
 use crate::model::{Form, LoadError, Pack, TranslatorMeta};
 
-/// Largest bias: 128 m. With it, the direct term and the states' part no output leaves 32 bits.
+/// Largest bias: 2048 m. With it, the direct term and the states' part no output leaves 32 bits.
 const LARGEST_BIAS: u32 = 1 << 29;
 
 /// A direct term in fixed point: 3 x 3, row-major, and the shift of its sums.
@@ -273,4 +273,4 @@ fn refuse(tensor: &'static str, index: Option<usize>) -> Result<(), LoadError> {
 }
 
 // The unit of an output is the kernel's; the bias's limit is in it.
-const _: () = assert!(LARGEST_BIAS >> OUTPUT_BITS == 128);
+const _: () = assert!(LARGEST_BIAS >> OUTPUT_BITS == 2048);
