@@ -15,7 +15,7 @@ use kinesic_host::face::{HostFace, made};
 use kinesic_host::limit::HostLimiter;
 use kinesic_host::mechanics::HostMechanics;
 use kinesic_host::pack::{PackFile, Provenance};
-use kinesic_host::quantise::{to_int8, to_int16};
+use kinesic_host::quantise::to_int8;
 use kinesic_host::translate::FormChoice;
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
@@ -31,23 +31,13 @@ const GOLDEN: [(&str, FormChoice, usize); 2] =
 type Make = fn() -> Vec<u8>;
 
 /// The other kinds: small packs of drawn numbers.
-const MADE: [(&str, Make); 7] = [
-    ("translator-per-joint-i16.kin", per_joint_int16),
-    ("translator-whole-body-i16.kin", whole_body_int16),
+const MADE: [(&str, Make); 5] = [
     ("mechanics.kin", engines::mechanics),
     ("mechanics-i8.kin", int8),
     ("components.kin", engines::components),
     ("face.kin", face),
     ("limits.kin", engines::limits_pack),
 ];
-
-fn per_joint_int16() -> Vec<u8> {
-    to_int16(&golden("translator-per-joint.kin"), &Provenance::default()).unwrap()
-}
-
-fn whole_body_int16() -> Vec<u8> {
-    to_int16(&golden("translator-whole-body.kin"), &Provenance::default()).unwrap()
-}
 
 fn int8() -> Vec<u8> {
     to_int8(&PackFile::from_bytes(&engines::mechanics()), &Provenance::default()).unwrap()
@@ -102,7 +92,6 @@ fn golden_packs_of_every_kind_load() {
         let file = golden(name);
         let pack = file.pack().unwrap();
         let loads = match pack.kind() {
-            Kind::Translator => Device::load(&pack).map(drop),
             Kind::Mechanics => HostMechanics::load(&pack).map(drop),
             Kind::Components => HostComponents::load(&pack).map(drop),
             Kind::Face => HostFace::load(&pack).map(drop),
