@@ -1,22 +1,43 @@
-//! Which loop the target gets. The compiler does not tell a crate about the DSP extension, so it is read from the target.
+//! Which loops the target gets. The compiler does not tell a crate about the DSP extension and Helium, so they are read from
+//! the target and from `-C target-cpu`.
 
 use std::env::var;
 
+/// ARMv8-M cores with the DSP extension.
+const DSP: [&str; 5] = ["cortex-m33", "cortex-m35p", "cortex-m52", "cortex-m55", "cortex-m85"];
+
+/// Cores with Helium, for which the compiler makes vectors of the portable f32 loop.
+const HELIUM: [&str; 3] = ["cortex-m52", "cortex-m55", "cortex-m85"];
+
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
+    println!("cargo::rerun-if-env-changed=CARGO_ENCODED_RUSTFLAGS");
+    let target = var("TARGET").unwrap_or_default();
+    if target.starts_with("thumbv6m") {
+        println!("cargo::rustc-cfg=kinesic_narrow_multiply");
+    }
     if var("CARGO_FEATURE_ASM").is_err() {
         return;
     }
-    // ARMv8-M has the extension as an option that the assembler must be told about: there the portable loop runs.
-    match var("TARGET").unwrap_or_default() {
-        target if target.starts_with("thumbv7em") => choose("dsp"),
-        target if target.starts_with("thumbv6m") => choose("thumb1"),
-        _ => {}
+    let flags = var("CARGO_ENCODED_RUSTFLAGS").unwrap_or_default();
+    let cpu =
+        flags.split('\x1f').filter_map(|flag| flag.split_once("target-cpu=")).next_back().map_or("", |(_, cpu)| cpu);
+    let mainline = target.starts_with("thumbv8m.main");
+    if target.starts_with("thumbv7em") || mainline && DSP.contains(&cpu) && !flags.contains("-dsp") {
+        choose("kinesic_tile", "dsp");
+    } else if target.starts_with("thumbv6m") {
+        choose("kinesic_tile", "thumb1");
+    }
+    if mainline {
+        println!("cargo::rustc-cfg=kinesic_mainline");
+    }
+    if target.ends_with("eabihf") && (target.starts_with("thumbv7em") || mainline) && !HELIUM.contains(&cpu) {
+        println!("cargo::rustc-cfg=kinesic_column_tile");
     }
 }
 
 /// The name alone too: `cfg(kinesic_tile)` does not hold for a name with a value.
-fn choose(tile: &str) {
-    println!("cargo::rustc-cfg=kinesic_tile");
-    println!("cargo::rustc-cfg=kinesic_tile=\"{tile}\"");
+fn choose(name: &str, value: &str) {
+    println!("cargo::rustc-cfg={name}");
+    println!("cargo::rustc-cfg={name}=\"{value}\"");
 }

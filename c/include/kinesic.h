@@ -25,9 +25,9 @@
 #define KINESIC_COMPONENTS 64
 
 /**
- * Units of a layer of body mechanics.
+ * Units of the hidden layer and the code of body mechanics together.
  */
-#define KINESIC_UNITS 300
+#define KINESIC_UNITS 600
 
 /**
  * Frames of memory of body mechanics: a third of the frame rate.

@@ -24,8 +24,8 @@ pub const KINESIC_JOINTS: usize = 32;
 pub const KINESIC_STATES: usize = 1280;
 /// Style components.
 pub const KINESIC_COMPONENTS: usize = 64;
-/// Units of a layer of body mechanics.
-pub const KINESIC_UNITS: usize = 300;
+/// Units of the hidden layer and the code of body mechanics together.
+pub const KINESIC_UNITS: usize = 600;
 /// Frames of memory of body mechanics: a third of the frame rate.
 pub const KINESIC_WINDOW: usize = 20;
 

@@ -57,6 +57,8 @@ pub struct WorkloadEntry {
     pub title: String,
     /// Frames to run.
     pub frames: usize,
+    /// The crate that a user would take instead: measured beside ours, and free to panic.
+    pub peer: Option<String>,
 }
 
 /// What one workload may cost on one target.

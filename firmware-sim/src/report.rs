@@ -101,13 +101,23 @@ pub fn table(data: &Data, all: &[Measured]) -> String {
     compilers.dedup();
     text += &format!("Compiled by {}.\n", compilers.join(", "));
     let proven = all.iter().filter(|one| one.same_bits.is_ok()).count();
-    let free = all.iter().filter(|one| one.forbidden.is_empty()).count();
+    let ours = all.iter().filter(|one| one.peer.is_none());
+    let (count, free) = (ours.clone().count(), ours.filter(|one| one.forbidden.is_empty()).count());
     text += &format!(
-        "Output bits of every frame equal the host's: {proven} of {}. Free of panic, formatting and heap: {free} of {}.\n",
+        "Output bits of every frame equal the host's: {proven} of {}. Free of panic, formatting and heap: {free} of {count}.\n",
         all.len(),
-        all.len()
     );
+    let mut peers: Vec<String> = all.iter().filter_map(peer).collect();
+    peers.dedup();
+    peers.iter().for_each(|peer| text += peer);
     text
+}
+
+/// What a peer is, and whether panics are linked with it.
+fn peer(one: &Measured) -> Option<String> {
+    let name = one.peer.as_ref()?;
+    let panics = if one.forbidden.is_empty() { "no panic machinery" } else { "with panic machinery" };
+    Some(format!("PEER: {} is {name}, {panics}\n", one.workload))
 }
 
 /// The dearest and the largest functions of each image.

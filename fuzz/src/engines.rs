@@ -36,7 +36,7 @@ fn translator(pack: &Pack, frames: &mut Frames) {
 }
 
 fn mechanics(pack: &Pack, frames: &mut Frames) {
-    let Ok(model) = BodyMechanics::<JOINTS, 256, 120>::load(pack) else { return };
+    let Ok(model) = BodyMechanics::<JOINTS, 512, 120>::load(pack) else { return };
     let mut state = Box::new(MechanicsState::new());
     let (mut parts, mut before) = (Decoupled::identity(), Decoupled::identity());
     let mut out = Pose::identity();

@@ -48,7 +48,8 @@ pub fn rust_module(file: &PackFile, origin: &str) -> Result<String, LoadError> {
                 constant("Filter states of the translator", "STATES", &(2 * meta.blocks + meta.drives), "usize");
             }
             ModelMeta::Mechanics(meta) => {
-                constant("Units of the widest layer of body mechanics", "UNITS", &meta.hidden.max(meta.code), "usize");
+                let units = meta.hidden.next_multiple_of(4) + meta.code.next_multiple_of(4);
+                constant("Units of the hidden layer and the code of body mechanics", "UNITS", &units, "usize");
                 constant(
                     "Frames of memory of body mechanics",
                     "WINDOW",

@@ -129,10 +129,10 @@ fn capacities_and_shapes_are_checked() {
         LoadError::Capacity { parameter, .. } => assert_eq!(parameter, name),
         other => panic!("{name}: {other}"),
     };
-    refused(BodyMechanics::<8, 128, 20>::load(&pack).unwrap_err(), "JOINTS");
-    refused(BodyMechanics::<32, 16, 20>::load(&pack).unwrap_err(), "UNITS");
-    refused(BodyMechanics::<32, 128, 19>::load(&pack).unwrap_err(), "WINDOW");
-    assert!(BodyMechanics::<31, 100, 20>::load(&pack).is_ok());
+    refused(BodyMechanics::<8, 152, 20>::load(&pack).unwrap_err(), "JOINTS");
+    refused(BodyMechanics::<32, 148, 20>::load(&pack).unwrap_err(), "UNITS");
+    refused(BodyMechanics::<32, 152, 19>::load(&pack).unwrap_err(), "WINDOW");
+    assert!(BodyMechanics::<31, 150, 20>::load(&pack).is_ok());
 
     // A pack with one thing wrong at a time.
     type Change = fn(&mut MechanicsMeta, &mut Vec<(&'static str, Vec<f32>)>);

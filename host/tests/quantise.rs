@@ -1,16 +1,27 @@
-//! int8 networks: near the f32 pack on an unseen walk, refused where there is nothing to round, guarded like every pack.
+//! int8 networks and int16 translators: near the f32 pack on an unseen walk, refused where there is nothing to round, guarded like every pack.
 
 use std::path::{Path, PathBuf};
 
+use kinesic::Pose;
 use kinesic_host::clip::JointMap;
 use kinesic_host::gait::{Manner, walk};
 use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_host::prepare::Source;
-use kinesic_host::quantise::{QuantiseError, difference, to_int8};
-use kinesic_host::rig::Rig;
+use kinesic_host::quantise::{QuantiseError, difference, to_int8, to_int16, translated_difference};
+use kinesic_host::rig::{MAX_JOINTS, Rig};
 
 fn model(name: &str) -> PackFile {
     PackFile::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../models").join(name)).unwrap()
+}
+
+/// A made walk on the pack's body.
+fn unseen(file: &PackFile, manner: &Manner) -> Vec<Pose<MAX_JOINTS>> {
+    let pack = file.pack().unwrap();
+    let rig = Rig::from_pack(&pack).unwrap();
+    let clip = walk(manner, 6.0, 60.0, 0.0, 5);
+    let map = JointMap::detect(&clip.skeleton).unwrap();
+    let fps = f64::from(pack.metadata().frame_rate);
+    rig.poses(&Source { path: PathBuf::from("made"), clip, map }.on_rig(&rig, fps).unwrap())
 }
 
 #[test]
@@ -19,10 +30,7 @@ fn an_int8_network_is_within_half_a_degree() {
     let bytes = to_int8(&file, &Provenance::default()).unwrap();
     assert_eq!(bytes, to_int8(&file, &Provenance::default()).unwrap());
     let rounded = PackFile::from_bytes(&bytes);
-    let rig = Rig::from_pack(&file.pack().unwrap()).unwrap();
-    let clip = walk(&Manner::WEARY, 6.0, 60.0, 0.0, 5);
-    let map = JointMap::detect(&clip.skeleton).unwrap();
-    let poses = rig.poses(&Source { path: PathBuf::from("made"), clip, map }.on_rig(&rig, 60.0).unwrap());
+    let poses = unseen(&file, &Manner::WEARY);
     let found = difference(&file.pack().unwrap(), &rounded.pack().unwrap(), &[poses]).unwrap();
     println!("{found:?}, {} bytes", bytes.len());
     // Not zero: the weights were really rounded.
@@ -30,12 +38,31 @@ fn an_int8_network_is_within_half_a_degree() {
 }
 
 #[test]
+fn an_int16_translator_is_within_a_tenth_of_a_degree() {
+    for name in ["weary.kin"] {
+        let file = model(name);
+        let bytes = to_int16(&file, &Provenance::default()).unwrap();
+        assert_eq!(bytes, to_int16(&file, &Provenance::default()).unwrap());
+        let rounded = PackFile::from_bytes(&bytes);
+        let clips = [Manner::NEUTRAL, Manner::WEARY].map(|manner| unseen(&file, &manner));
+        let found = translated_difference(&file.pack().unwrap(), &rounded.pack().unwrap(), &clips).unwrap();
+        println!("{name}: {found:?}, {} bytes instead of {}", bytes.len(), file.bytes().len());
+        assert!(found.frames > 600 && found.mean_deg > 1e-5 && found.mean_deg < 0.1, "{name}: {found:?}");
+        assert!(bytes.len() < file.bytes().len(), "{name}");
+    }
+}
+
+#[test]
 fn what_cannot_be_rounded_is_refused() {
     let done = to_int8(&model("mechanics.kin"), &Provenance::default()).unwrap();
     let twice = to_int8(&PackFile::from_bytes(&done), &Provenance::default());
-    assert!(matches!(twice, Err(QuantiseError::Done)));
+    assert!(matches!(twice, Err(QuantiseError::Done { .. })));
     let none = to_int8(&model("weary.kin"), &Provenance::default());
     assert!(matches!(none, Err(QuantiseError::NoNetwork { found }) if found == "translator"));
+    let none = to_int16(&model("mechanics.kin"), &Provenance::default());
+    assert!(matches!(none, Err(QuantiseError::NoTranslator { found }) if found == "mechanics"));
+    let done = PackFile::from_bytes(&to_int16(&model("weary.kin"), &Provenance::default()).unwrap());
+    assert!(matches!(to_int16(&done, &Provenance::default()), Err(QuantiseError::Done { .. })));
 }
 
 #[test]

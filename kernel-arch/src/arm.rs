@@ -19,9 +19,25 @@ pub fn tile(weights: &[Weights], inputs: &[Inputs], sums: &mut [i32; 4]) {
     unsafe { kinesic_tile(weights.as_ptr(), inputs.as_ptr(), groups, sums) }
 }
 
+/// What the assembler must be told before it takes SMLAD: nothing on ARMv7E-M; on ARMv8-M the name of a core that has the
+/// extension. build.rs has made sure that the target's has it.
+#[cfg(all(kinesic_tile = "dsp", kinesic_mainline))]
+macro_rules! extension {
+    () => {
+        ".cpu cortex-m33"
+    };
+}
+#[cfg(all(kinesic_tile = "dsp", not(kinesic_mainline)))]
+macro_rules! extension {
+    () => {
+        ""
+    };
+}
+
 // Cortex-M4: 28 cycles for 16 multiply-adds (two block loads of 3 and 5, 16 data instructions, 4 for the loop).
 #[cfg(kinesic_tile = "dsp")]
 global_asm!(
+    extension!(),
     ".syntax unified",
     ".section .text.kinesic_tile,\"ax\",%progbits",
     ".p2align 2",

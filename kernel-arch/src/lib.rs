@@ -1,14 +1,17 @@
-//! Four rows of an int8 matrix times a vector of int16: the inner loop of kinesic's quantised networks.
+//! The two loops that kinesic's matrices run through: [`tile`], four rows of int8 times int16, and [`column_tile`], eight rows
+//! of f32.
 //!
-//! [`portable::tile`] is the definition, in safe Rust. On ARMv7E-M [`tile`] is a loop
-//! around SMLAD, on ARMv6-M one around MULS, both in assembly, because the compiler finds neither; on every other core it is the
-//! portable loop. The bits are the same: all arithmetic is modulo 2^32. Without the feature `asm` the portable loop is used
-//! everywhere and the crate holds no unsafe code.
+//! [`portable`] is the definition of both, in safe Rust. Where the compiler does not find the right instructions there is
+//! assembly: SMLAD on cores with the DSP extension, MULS on ARMv6-M, block loads of the single-precision FPU. On every other core
+//! the portable loops run. The bits are the same: integers are modulo 2^32, floats have one order and two roundings a
+//! multiply-add. Without the feature `asm` the crate holds no unsafe code.
 #![no_std]
 
 #[cfg(kinesic_tile)]
 mod arm;
 pub mod portable;
+#[cfg(kinesic_column_tile)]
+mod vfp;
 
 /// Sixteen weights, four rows by four columns: a word a row, its bytes the columns 0, 2, 1, 3 (lowest byte first), so that
 /// one SXTB16 gives columns 0 and 1 and another, rotated by eight bits, columns 2 and 3.
@@ -28,7 +31,29 @@ pub fn tile(weights: &[Weights], inputs: &[Inputs], sums: &mut [i32; 4]) {
 #[cfg(kinesic_tile)]
 pub use arm::tile;
 
+/// `sums[row] += weights[column][row] * x[column]`, columns in order, over the shorter of `weights` and `x`. Bit-equal to
+/// [`portable::column_tile`] on every core.
+#[cfg(not(kinesic_column_tile))]
+#[inline]
+pub fn column_tile(weights: &[[f32; 8]], x: &[f32], sums: &mut [f32; 8]) {
+    portable::column_tile(weights, x, sums);
+}
+
+#[cfg(kinesic_column_tile)]
+pub use vfp::column_tile;
+
 /// The word of a row: its four columns in the order that [`Weights`] has.
 pub const fn pack_weights([c0, c1, c2, c3]: [i8; 4]) -> u32 {
     u32::from_le_bytes([c0 as u8, c2 as u8, c1 as u8, c3 as u8])
 }
+
+/// `w * x / 2^16`, rounded down: SMULW on ARMv7E-M.
+#[cfg(not(kinesic_narrow_multiply))]
+#[inline(always)]
+pub fn scale16(w: i16, x: i32) -> i32 {
+    ((i64::from(w) * i64::from(x)) >> 16) as i32
+}
+
+/// `w * x / 2^16`, rounded down, in two products of 32 bits: the core has no wider ones.
+#[cfg(kinesic_narrow_multiply)]
+pub use portable::scale16;

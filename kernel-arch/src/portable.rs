@@ -1,4 +1,4 @@
-//! The loop in safe Rust: what the assembly must equal.
+//! The loops in safe Rust: what the assembly must equal.
 
 use crate::{Inputs, Weights};
 
@@ -14,6 +14,26 @@ pub fn tile(weights: &[Weights], inputs: &[Inputs], sums: &mut [i32; 4]) {
         s3 = row(*w3, x, s3);
     }
     *sums = [s0, s1, s2, s3];
+}
+
+/// See [`crate::column_tile`].
+#[inline]
+pub fn column_tile(weights: &[[f32; 8]], x: &[f32], sums: &mut [f32; 8]) {
+    let mut sum = *sums;
+    for (weights, x) in weights.iter().zip(x) {
+        for (sum, weight) in sum.iter_mut().zip(weights) {
+            *sum += weight * x;
+        }
+    }
+    *sums = sum;
+}
+
+/// See [`crate::scale16`], from two products of 32 bits.
+#[inline(always)]
+pub fn scale16(w: i16, x: i32) -> i32 {
+    let w = i32::from(w);
+    // At most 2^15 * 2^16 in size: neither product can wrap.
+    (x >> 16) * w + (((x & 0xffff) * w) >> 16)
 }
 
 #[inline(always)]
@@ -59,6 +79,46 @@ mod tests {
             for row in 0..4 {
                 let exact: i64 = (0..columns).map(|c| i64::from(rows[row][c]) * i64::from(x[c])).sum();
                 assert_eq!(sums[row], (i64::from(before[row]) + exact) as i32, "row {row} of {columns} columns");
+            }
+        }
+    }
+
+    #[test]
+    fn both_ways_to_scale_round_down() {
+        let values = [0, 1, -1, 2, 65_535, 65_536, -65_536, 12_345_678, -12_345_679, i32::MAX, i32::MIN];
+        for w in (i16::MIN..=i16::MAX).step_by(13).chain([i16::MAX]) {
+            for x in values {
+                let exact = (i64::from(w) * i64::from(x)).div_euclid(65_536);
+                assert_eq!(i64::from(scale16(w, x)), exact, "{w} {x}");
+                assert_eq!(i64::from(crate::scale16(w, x)), exact, "{w} {x}");
+            }
+        }
+    }
+
+    #[test]
+    fn columns_are_added_in_order_with_two_roundings() {
+        let mut seed = 1u32;
+        let mut next = || {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (seed >> 8) as f32 / 8_388_608.0 - 1.0
+        };
+        for columns in 0..40 {
+            let mut weights = [[0.0; 8]; 40];
+            weights.iter_mut().flatten().for_each(|weight| *weight = next());
+            let x: [f32; 40] = core::array::from_fn(|_| next());
+            let before: [f32; 8] = core::array::from_fn(|_| next());
+            let (mut sums, mut public) = (before, before);
+            // The longer of the two is cut.
+            column_tile(&weights[..columns], &x, &mut sums);
+            crate::column_tile(&weights, &x[..columns], &mut public);
+            assert_eq!(public, sums);
+            for row in 0..8 {
+                let mut sum = before[row];
+                for column in 0..columns {
+                    let product = f64::from(weights[column][row]) * f64::from(x[column]);
+                    sum = (f64::from(sum) + f64::from(product as f32)) as f32;
+                }
+                assert_eq!(sums[row], sum, "row {row} of {columns} columns");
             }
         }
     }

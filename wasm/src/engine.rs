@@ -22,7 +22,7 @@ pub struct Engine {
 enum Model {
     Translator { model: Translator<'static, JOINTS, 16_384>, state: TranslatorState<JOINTS, 16_384>, started: bool },
     Components { model: Components<'static, JOINTS, 256>, state: ComponentsState<JOINTS> },
-    Mechanics { model: BodyMechanics<'static, JOINTS, 1024, 120>, states: [MechanicsState<JOINTS, 120>; 2] },
+    Mechanics { model: BodyMechanics<'static, JOINTS, 2048, 120>, states: [MechanicsState<JOINTS, 120>; 2] },
 }
 
 impl Engine {

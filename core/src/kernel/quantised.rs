@@ -39,10 +39,16 @@ impl<const N: usize> Activations<N> {
         &mut self.0
     }
 
-    /// The values as the kernel reads them.
-    fn groups(&self) -> &[Inputs] {
-        bytemuck::pod_align_to::<i16, Inputs>(&self.0).1
+    /// The first `first` values and the `second` behind them, each rounded up to whole groups; `None` if there are not as many.
+    pub fn split(&mut self, first: usize, second: usize) -> Option<[&mut [i16]; 2]> {
+        let (one, rest) = self.0.split_at_mut_checked(first.checked_next_multiple_of(TILE)?)?;
+        Some([one, rest.get_mut(..second.checked_next_multiple_of(TILE)?)?])
     }
+}
+
+/// Values on a word boundary as the kernel reads them, in whole groups.
+fn groups(x: &[i16]) -> &[Inputs] {
+    bytemuck::pod_align_to::<i16, Inputs>(x).1
 }
 
 /// A layer `W x + b` with int8 weights, stored as tiles of [`TILE`] rows, columns in groups of four: `tile[t][group][row]`.
@@ -87,23 +93,35 @@ impl<'a> Quantised<'a> {
         self.tiles.len().saturating_mul(TILE * TILE)
     }
 
-    /// Gives `each` what the rows make of `x`, in order, beside the elements of `out`; what lies behind the rows is left alone.
+    /// What the rows make of `x` (on a word boundary, in whole groups of four, as [`Activations`] has it), four rows after four; what
+    /// lies behind the last row is zero.
     #[inline]
-    pub fn apply<const N: usize, T>(&self, x: &Activations<N>, out: &mut [T], each: impl Fn(i32) -> T) {
-        let tiles = self.tiles.chunks_exact(self.groups.get());
+    pub fn tiles<'x>(&self, x: &'x [i16]) -> impl Iterator<Item = [i32; TILE]> + use<'a, 'x> {
         let rows = self.multipliers.chunks(TILE).zip(self.bias.chunks(TILE));
-        for ((tiles, (multipliers, bias)), out) in tiles.zip(rows).zip(out.chunks_mut(TILE)) {
-            let mut sums = [0; TILE];
-            tile(tiles, x.groups(), &mut sums);
-            for (((sum, multiplier), bias), out) in sums.into_iter().zip(multipliers).zip(bias).zip(out) {
-                *out = each(scale(sum, *multiplier).wrapping_add(*bias));
+        self.tiles.chunks_exact(self.groups.get()).zip(rows).map(move |(tiles, (multipliers, bias))| {
+            let (mut sums, mut out) = ([0; TILE], [0; TILE]);
+            tile(tiles, groups(x), &mut sums);
+            for (((out, sum), multiplier), bias) in out.iter_mut().zip(sums).zip(multipliers).zip(bias) {
+                *out = scale(sum, *multiplier).wrapping_add(*bias);
+            }
+            out
+        })
+    }
+
+    /// Writes what `each` makes of the rows, in order; what lies behind them is left alone.
+    #[inline]
+    pub fn apply<T>(&self, x: &[i16], out: &mut [T], each: impl Fn(i32) -> T) {
+        let Some(out) = out.get_mut(..self.rows()) else { return };
+        for (rows, out) in self.tiles(x).zip(out.chunks_mut(TILE)) {
+            for (row, out) in rows.into_iter().zip(out) {
+                *out = each(row);
             }
         }
     }
 
     /// [`apply`](Self::apply) through [`tanh_fixed`]: the activations of the next layer.
-    pub fn apply_tanh<const N: usize, const M: usize>(&self, x: &Activations<N>, out: &mut Activations<M>) {
-        self.apply(x, out.values(), tanh_fixed);
+    pub fn apply_tanh(&self, x: &[i16], out: &mut [i16]) {
+        self.apply(x, out, tanh_fixed);
     }
 }
 
@@ -121,11 +139,12 @@ static TANH: [i16; 257] = tanh_table();
 /// `tanh(x)` in fixed point: `x` in units of 2^-12, the result in units of 2^-13. A table of 257 values and a straight line
 /// between them; absolute error below 2.5e-4 over all inputs; odd, rising. Cost: a multiply.
 pub fn tanh_fixed(x: i32) -> i16 {
-    let size = x.unsigned_abs();
+    // From 8 on the table is 1: the last step holds.
+    let size = x.unsigned_abs().min((8 << PRE_ACTIVATION_BITS) - 1);
     let at = (size >> STEP_BITS) as usize;
     let part = (size & ((1 << STEP_BITS) - 1)) as i32;
     let value = |at: usize| i32::from(TANH.get(at).copied().unwrap_or(LARGEST_ACTIVATION));
-    let (low, high) = (value(at), value(at.saturating_add(1)));
+    let (low, high) = (value(at), value(at + 1));
     let y = low + (((high - low) * part + (1 << (STEP_BITS - 1))) >> STEP_BITS);
     (if x < 0 { -y } else { y }) as i16
 }
@@ -186,7 +205,7 @@ mod tests {
         let values = [8192, -8192, 100, 3, -5, 77];
         x.values()[..6].copy_from_slice(&values);
         let mut out = [0i32; 6];
-        layer.apply(&x, &mut out, |z| z);
+        layer.apply(x.values(), &mut out, |z| z);
         for row in 0..5 {
             let sum: i64 = (0..6).map(|c| i64::from(entry(row, c)) * i64::from(values[c])).sum();
             assert_eq!(i64::from(out[row]), (sum + 2).div_euclid(4) + i64::from(bias[row]), "row {row}");

@@ -2,6 +2,8 @@
 
 use core::num::NonZeroUsize;
 
+use kinesic_kernel_arch::column_tile;
+
 use crate::model::{LoadError, Pack};
 
 /// Rows of one tile.
@@ -38,17 +40,21 @@ impl<'a> Tiled<'a> {
 
     /// `y += W x`. Cost: `rows` (rounded up to 8) x `columns` multiply-adds.
     pub fn multiply_add(&self, x: &[f32], y: &mut [f32]) {
-        for (tile, y) in self.tiles.chunks_exact(self.columns.get()).zip(y.chunks_mut(ROWS)) {
-            let mut sum = [0.0f32; ROWS];
-            for (weights, x) in tile.iter().zip(x) {
-                for (sum, weight) in sum.iter_mut().zip(weights) {
-                    *sum += weight * x;
-                }
-            }
-            for (y, sum) in y.iter_mut().zip(sum) {
+        for (sums, y) in self.sums(x).zip(y.chunks_mut(ROWS)) {
+            for (y, sum) in y.iter_mut().zip(sums) {
                 *y += sum;
             }
         }
+    }
+
+    /// `W x`, a tile of rows after the other.
+    #[inline]
+    pub fn sums<'x>(&self, x: &'x [f32]) -> impl Iterator<Item = [f32; ROWS]> + use<'a, 'x> {
+        self.tiles.chunks_exact(self.columns.get()).map(move |tile| {
+            let mut sums = [0.0; ROWS];
+            column_tile(tile, x, &mut sums);
+            sums
+        })
     }
 }
 

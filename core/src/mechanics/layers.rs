@@ -1,8 +1,11 @@
 //! The three layers of the network, in f32 or with int8 weights: the pack's tensors decide.
 
+use nalgebra::{Quaternion, UnitQuaternion};
+
 use super::features::{FEATURES, fits};
 use crate::kernel::{Activations, LARGEST_ACTIVATION, Quantised, ROWS, TILE, Tiled, tanh};
-use crate::model::{LoadError, Pack, TensorType};
+use crate::model::{LoadError, Numbers, Pack, TensorType};
+use crate::pose::unit;
 
 /// Features this many deviations away from the mean are cut: further away the network knows nothing.
 pub const FARTHEST: f32 = 6.0;
@@ -39,13 +42,22 @@ pub struct Layer<'a> {
 }
 
 impl<'a> Layers<'a> {
-    /// Layers of `hidden`, `code` and `outputs` rows; `units` is the capacity for what lies between two layers.
-    pub fn load(pack: &Pack<'a>, [hidden, code, outputs]: [usize; 3], units: usize) -> Result<Self, LoadError> {
+    /// Layers of `hidden`, `code` and `outputs` rows; `units` is the capacity for the units of the first two.
+    pub fn load<N: Numbers>(
+        pack: &Pack<'a>,
+        [hidden, code, outputs]: [usize; 3],
+        units: usize,
+    ) -> Result<Self, LoadError> {
         let float = |names, rows, columns| Layer::load(pack, names, rows, columns);
         let integer = |names, rows, columns| Quantised::load(pack, names, rows, columns);
-        if pack.number("mechanics/hidden")? == TensorType::I8 {
+        let found = pack.number("mechanics/hidden")?;
+        if !matches!((found, N::FLOAT, N::INTEGER), (TensorType::F32, true, _) | (TensorType::I8, _, true)) {
+            return Err(LoadError::NumberType { tensor: "mechanics/hidden", found });
+        }
+        if N::INTEGER && (found == TensorType::I8 || !N::FLOAT) {
             // The integer kernel reads whole groups of activations.
-            fits("UNITS", hidden.max(code).next_multiple_of(TILE), units / TILE * TILE)?;
+            let groups = hidden.div_ceil(TILE).saturating_add(code.div_ceil(TILE));
+            fits("UNITS", groups.saturating_mul(TILE), units)?;
             let names = [
                 ["mechanics/hidden", "mechanics/hidden_scale", "mechanics/hidden_bias"],
                 ["mechanics/code", "mechanics/code_scale", "mechanics/code_bias"],
@@ -58,6 +70,7 @@ impl<'a> Layers<'a> {
                 integer(third, outputs, code)?,
             ]));
         }
+        fits("UNITS", hidden.saturating_add(code), units)?;
         Ok(Self::Float([
             float(["mechanics/hidden", "mechanics/hidden_bias"], hidden, FEATURES)?,
             float(["mechanics/code", "mechanics/code_bias"], code, hidden)?,
@@ -81,39 +94,63 @@ impl<'a> Layers<'a> {
         }
     }
 
-    /// From features, normalised and cut at [`FARTHEST`], to quaternions.
-    pub fn apply<const UNITS: usize>(&self, input: &[f32; FEATURES], output: &mut [f32]) {
+    /// From features, normalised and cut at [`FARTHEST`], to rotations, one for every four outputs.
+    pub fn apply<'r, const UNITS: usize, N: Numbers>(
+        &self,
+        input: &[f32; FEATURES],
+        rotations: impl Iterator<Item = &'r mut UnitQuaternion<f32>>,
+    ) {
         match self {
-            Self::Float(layers) => float::<UNITS>(layers, input, output),
-            Self::Integer(layers) => integer::<UNITS>(layers, input, output),
+            // Guards are constant: code of number types that N leaves out is not linked.
+            Self::Float(layers) if N::FLOAT => float::<UNITS>(layers, input, rotations),
+            Self::Integer(layers) if N::INTEGER => integer::<UNITS>(layers, input, rotations),
+            _ => {}
         }
     }
 }
 
 // Two functions, so that the stack holds one precision's activations.
 #[inline(never)]
-fn float<const UNITS: usize>([hidden, code, decoder]: &[Layer<'_>; 3], input: &[f32; FEATURES], output: &mut [f32]) {
-    let (mut first, mut second) = ([0.0; UNITS], [0.0; UNITS]);
-    hidden.apply_tanh(input, &mut first);
-    code.apply_tanh(&first, &mut second);
-    decoder.apply(&second, output);
+fn float<'r, const UNITS: usize>(
+    [hidden, code, decoder]: &[Layer<'_>; 3],
+    input: &[f32; FEATURES],
+    rotations: impl Iterator<Item = &'r mut UnitQuaternion<f32>>,
+) {
+    let mut units = [0.0; UNITS];
+    let Some((first, rest)) = units.split_at_mut_checked(hidden.bias.len()) else { return };
+    let Some(second) = rest.get_mut(..code.bias.len()) else { return };
+    hidden.apply_tanh(input, first);
+    code.apply_tanh(first, second);
+    let (biases, _) = decoder.bias.as_chunks::<4>();
+    let mut joints = rotations.zip(biases);
+    for tile in decoder.weights.sums(second) {
+        for ([x, y, z, w], (rotation, [bias_x, bias_y, bias_z, bias_w])) in
+            tile.as_chunks::<4>().0.iter().zip(&mut joints)
+        {
+            *rotation = unit(Quaternion::new(bias_w + w, bias_x + x, bias_y + y, bias_z + z));
+        }
+    }
 }
 
 #[inline(never)]
-fn integer<const UNITS: usize>(
+fn integer<'r, const UNITS: usize>(
     [hidden, code, decoder]: &[Quantised<'_>; 3],
     input: &[f32; FEATURES],
-    output: &mut [f32],
+    rotations: impl Iterator<Item = &'r mut UnitQuaternion<f32>>,
 ) {
     let mut features = Activations::<PADDED_FEATURES>::zero();
     for (out, x) in features.values().iter_mut().zip(input) {
         // Half is added away from zero, and the cast cuts: to nearest, with nothing but exact operations.
         *out = (x * INPUT_SCALE + if *x < 0.0 { -0.5 } else { 0.5 }) as i16;
     }
-    let (mut first, mut second) = (Activations::<UNITS>::zero(), Activations::<UNITS>::zero());
-    hidden.apply_tanh(&features, &mut first);
-    code.apply_tanh(&first, &mut second);
-    decoder.apply(&second, output, |z| z as f32 * (1.0 / (1u32 << OUTPUT_BITS) as f32));
+    let mut units = Activations::<UNITS>::zero();
+    let Some([first, second]) = units.split(hidden.rows(), code.rows()) else { return };
+    hidden.apply_tanh(features.values(), first);
+    code.apply_tanh(first, second);
+    for (rotation, outputs) in rotations.zip(decoder.tiles(second)) {
+        let [x, y, z, w] = outputs.map(|z| z as f32 * (1.0 / (1u32 << OUTPUT_BITS) as f32));
+        *rotation = unit(Quaternion::new(w, x, y, z));
+    }
 }
 
 impl<'a> Layer<'a> {

@@ -2,6 +2,8 @@
 
 use core::fmt;
 
+use super::TensorType;
+
 /// Why a pack, or a model in it, was refused. Every variant says what was found and what was expected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -77,6 +79,13 @@ pub enum LoadError {
         /// Elements that the model needs.
         expected: usize,
     },
+    /// A tensor has a number type that the type it is loaded into does not read: see [`Numbers`](super::Numbers).
+    NumberType {
+        /// Name of the tensor.
+        tensor: &'static str,
+        /// Number type in the file.
+        found: TensorType,
+    },
     /// A tensor holds a number that is not finite, or an index that is out of range.
     Value {
         /// Name of the tensor.
@@ -127,6 +136,9 @@ impl fmt::Display for LoadError {
             Self::NoTensor { tensor } => write!(f, "tensor {tensor} is missing"),
             Self::Shape { tensor, found, expected } => {
                 write!(f, "tensor {tensor} has {found} elements, expected {expected}")
+            }
+            Self::NumberType { tensor, found } => {
+                write!(f, "tensor {tensor} is {found:?}, which the type it is loaded into does not read")
             }
             Self::Value { tensor, index } => write!(f, "tensor {tensor}: element {index} is out of range"),
             Self::Unstable { block } => write!(f, "block {block} has a pole on or outside the unit circle"),

@@ -6,6 +6,7 @@
 
 mod error;
 mod meta;
+mod numbers;
 mod tensor;
 
 pub use error::LoadError;
@@ -14,6 +15,7 @@ pub use meta::{
     MechanicsMeta, Metadata, ModelMeta, TensorMeta, TensorType, TranslatorMeta,
 };
 
+pub use numbers::{AnyNumbers, Floats, Integers, Numbers};
 pub use tensor::Element;
 use tensor::payload_in_bounds;
 

@@ -47,7 +47,7 @@ impl<'a> Pack<'a> {
         groups.filter(|groups| groups.len() == expected).ok_or(LoadError::Shape { tensor: name, found, expected })
     }
 
-    /// The tensor `name` as a slice of `T` (`f32`, `u16`, `i32` or arrays of them), which must have `expected` elements.
+    /// The tensor `name` as a slice of `T` (`f32`, `u16`, `i16`, `i32` or arrays of them), which must have `expected` elements.
     ///
     /// Numbers are checked to be finite, so that no step can meet a NaN that came from the file.
     pub fn slice<T: Element>(&self, name: &'static str, expected: usize) -> Result<&'a [T], LoadError> {
@@ -83,6 +83,13 @@ impl Element for f32 {
 
 impl Element for u16 {
     const TYPE: TensorType = TensorType::U16;
+    fn is_valid(&self) -> bool {
+        true
+    }
+}
+
+impl Element for i16 {
+    const TYPE: TensorType = TensorType::I16;
     fn is_valid(&self) -> bool {
         true
     }

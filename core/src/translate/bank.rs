@@ -1,4 +1,4 @@
-//! The dynamic part of a translator, in one of its two forms.
+//! The dynamic part of a translator in f32, in one of its two forms.
 
 use crate::kernel::{self, Block, JointBlock, Tiled};
 use crate::model::{Form, LoadError, Pack, TranslatorMeta};
@@ -124,7 +124,7 @@ fn whole_body<'a>(pack: &Pack<'a>, meta: &TranslatorMeta, joints: usize) -> Resu
     })
 }
 
-fn all_stable(blocks: impl Iterator<Item = Block>) -> Result<(), LoadError> {
+pub(super) fn all_stable(blocks: impl Iterator<Item = Block>) -> Result<(), LoadError> {
     for (block, entries) in blocks.enumerate() {
         if !kernel::is_stable(&entries) {
             return Err(LoadError::Unstable { block });

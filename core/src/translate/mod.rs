@@ -5,6 +5,8 @@
 //! with 3 inputs and 3 outputs; *whole body*, one model driven by a few principal coordinates of all joints.
 
 mod bank;
+mod fixed;
+mod float;
 mod model;
 mod state;
 mod step;

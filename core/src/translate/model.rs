@@ -1,40 +1,43 @@
 //! The translator: a checked, immutable view of a pack.
 
-use super::bank::Bank;
-use crate::model::{Form, LoadError, ModelMeta, Pack, TranslatorMeta};
+use super::fixed::Fixed;
+use super::float::Float;
+use core::marker::PhantomData;
+
+use crate::model::{AnyNumbers, LoadError, ModelMeta, Numbers, Pack, TensorType, TranslatorMeta};
 use crate::pose::Skeleton;
 
 /// A style translator for up to `JOINTS` joints and `STATES` filter states, borrowed from a pack.
 ///
-/// `STATES` counts two for every 2 x 2 block, plus, in the whole-body form, one for every principal coordinate.
+/// Coefficients are f32, or int16 with int32 states (`kinesic quantize --precision i16`): the pack decides. `STATES` counts two for every 2 x 2 block, plus, in the whole-body form, one for every principal coordinate.
 #[derive(Clone, Copy, Debug)]
-pub struct Translator<'a, const JOINTS: usize, const STATES: usize> {
+pub struct Translator<'a, const JOINTS: usize, const STATES: usize, N = AnyNumbers> {
     pub(super) meta: TranslatorMeta<'a>,
     pub(super) skeleton: Skeleton<'a>,
     /// Heading-local input: mean, m, and 1 / deviation, 1/m. Row 0 is `[travel x, height, travel z]` of the root.
     pub(super) mean: &'a [[f32; 3]],
     pub(super) inverse_deviation: &'a [[f32; 3]],
-    /// Output at zero input and state, m.
-    pub(super) bias: &'a [[f32; 3]],
-    /// Direct term from a joint to itself, row-major 3 x 3, m.
-    pub(super) direct: &'a [[f32; 9]],
-    pub(super) timing: TimingHead<'a>,
-    pub(super) bank: Bank<'a>,
+    pub(super) linear: Linear<'a>,
+    numbers: PhantomData<N>,
 }
 
-/// log2 of the duration, as a linear function of the normalised input (and, whole body, of the states).
+/// Everything between the normalised input and the output, in the pack's number type.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct TimingHead<'a> {
-    pub bias: f32,
-    /// Lowest and highest log2 that was seen in training.
-    pub range: [f32; 2],
-    pub input: &'a [f32],
-    pub states: &'a [f32],
+pub(super) enum Linear<'a> {
+    Float(Float<'a>),
+    Fixed(Fixed<'a>),
 }
 
 impl<'a, const JOINTS: usize, const STATES: usize> Translator<'a, JOINTS, STATES> {
-    /// The translator of a pack, after every check that makes [`step`](Self::step) infallible.
+    /// The translator of a pack in any number type, after every check that makes [`step`](Self::step) infallible.
     pub fn load(pack: &Pack<'a>) -> Result<Self, LoadError> {
+        Self::load_numbers(pack)
+    }
+}
+
+impl<'a, const JOINTS: usize, const STATES: usize, N: Numbers> Translator<'a, JOINTS, STATES, N> {
+    /// [`load`](Translator::load) for the number types `N`: `Translator::<J, S, Integers>::load_numbers(&pack)` links no f32 bank.
+    pub fn load_numbers(pack: &Pack<'a>) -> Result<Self, LoadError> {
         let meta = pack
             .metadata()
             .models
@@ -46,26 +49,18 @@ impl<'a, const JOINTS: usize, const STATES: usize> Translator<'a, JOINTS, STATES
         fits("JOINTS", joints, JOINTS)?;
         let states = 2 * meta.blocks as usize;
         fits("STATES", states.saturating_add(meta.drives as usize), STATES)?;
-        let bank = Bank::load(pack, &meta, joints)?;
-        let timing_states = if meta.form == Form::WholeBody { states + meta.drives as usize } else { 0 };
-        let [bias, low, high] = match pack.slice::<[f32; 3]>("translate/timing", 1)? {
-            [timing] => *timing,
-            _ => [0.0; 3],
+        let linear = match pack.number("translate/direct")? {
+            TensorType::F32 if N::FLOAT => Linear::Float(Float::load(pack, &meta, joints)?),
+            TensorType::I16 if N::INTEGER => Linear::Fixed(Fixed::load(pack, &meta, joints)?),
+            found => return Err(LoadError::NumberType { tensor: "translate/direct", found }),
         };
         Ok(Self {
             meta,
             skeleton,
             mean: pack.slice("translate/mean", joints)?,
             inverse_deviation: pack.slice("translate/inverse_deviation", joints)?,
-            bias: pack.slice("translate/bias", joints)?,
-            direct: pack.slice("translate/direct", joints)?,
-            timing: TimingHead {
-                bias,
-                range: [low, high],
-                input: pack.slice("translate/timing_input", 3 * joints)?,
-                states: pack.slice("translate/timing_states", timing_states)?,
-            },
-            bank,
+            linear,
+            numbers: PhantomData,
         })
     }
 
@@ -82,7 +77,19 @@ impl<'a, const JOINTS: usize, const STATES: usize> Translator<'a, JOINTS, STATES
     /// Multiply-adds of the recursion of one frame: the bank alone, without kinematics.
     pub fn multiply_adds(&self) -> usize {
         let joints = self.skeleton.joints();
-        9 * joints + self.bank.multiply_adds(joints)
+        let recursion = match &self.linear {
+            Linear::Float(linear) => linear.multiply_adds(joints),
+            Linear::Fixed(linear) => linear.multiply_adds(joints),
+        };
+        9 * joints + recursion
+    }
+
+    /// Number type of the coefficients: f32, or i16 with int32 states and sums.
+    pub fn number(&self) -> TensorType {
+        match self.linear {
+            Linear::Float(_) => TensorType::F32,
+            Linear::Fixed(_) => TensorType::I16,
+        }
     }
 }
 

@@ -9,7 +9,8 @@ use crate::pose::{Controls, Heading};
 /// The default is the zero initial state of the paper.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TranslatorState<const JOINTS: usize, const STATES: usize> {
-    pub(super) filters: [f32; STATES],
+    /// f32 or int32, as the pack has it: see [`view`](Self::view). All bits zero is zero in both.
+    pub(super) filters: [u32; STATES],
     pub(super) heading: Heading,
     pub(super) last_root: Option<Vector3<f32>>,
     /// How far the styled root has travelled away from the source's, world, m.
@@ -22,7 +23,7 @@ impl<const JOINTS: usize, const STATES: usize> TranslatorState<JOINTS, STATES> {
     /// Zero state, full strength, all joints.
     pub fn new() -> Self {
         Self {
-            filters: [0.0; STATES],
+            filters: [0; STATES],
             heading: Heading::default(),
             last_root: None,
             drift: Vector3::zeros(),
@@ -33,6 +34,11 @@ impl<const JOINTS: usize, const STATES: usize> TranslatorState<JOINTS, STATES> {
     /// The next frame's root is taken to have stood here before: a gap or a leap is no travel.
     pub(crate) fn rebase(&mut self, root: Vector3<f32>) {
         self.last_root = Some(root);
+    }
+
+    /// The filters as f32 or as i32: both have the size and the alignment of a word.
+    pub(super) fn view<T: bytemuck::Pod>(&mut self) -> &mut [T] {
+        bytemuck::try_cast_slice_mut(&mut self.filters).unwrap_or_default()
     }
 
     /// Forgets the past, keeps the controls.

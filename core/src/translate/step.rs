@@ -2,12 +2,12 @@
 
 use nalgebra::Vector3;
 
-use super::model::TimingHead;
+use super::model::Linear;
 use super::{Timing, Translator, TranslatorState};
-use crate::kernel;
+use crate::model::Numbers;
 use crate::pose::{Heading, Pose, World, forward, local_positions, nlerp, solve};
 
-impl<const JOINTS: usize, const STATES: usize> Translator<'_, JOINTS, STATES> {
+impl<const JOINTS: usize, const STATES: usize, N: Numbers> Translator<'_, JOINTS, STATES, N> {
     /// Puts the filters where holding the pose of the first frame for ever would have brought them.
     ///
     /// Without it they start from zero, as if the mean pose of the training had been held; then the first half second
@@ -18,7 +18,11 @@ impl<const JOINTS: usize, const STATES: usize> Translator<'_, JOINTS, STATES> {
         forward(&self.skeleton, source, &mut world);
         state.heading = state.heading.follow(&self.skeleton, &world);
         let input = self.normalised(&self.local(state.heading, Vector3::zeros(), &world));
-        self.bank.settle(&input, &mut state.filters);
+        match &self.linear {
+            Linear::Float(linear) if N::FLOAT => linear.settle(&input, state.view()),
+            Linear::Fixed(linear) if N::INTEGER => linear.settle(&input, state.view()),
+            _ => {}
+        }
         state.last_root = Some(source.root);
     }
 
@@ -43,18 +47,21 @@ impl<const JOINTS: usize, const STATES: usize> Translator<'_, JOINTS, STATES> {
         let local = self.local(heading, travel, &world);
         let input = self.normalised(&local);
         let mut output = [[0.0; 3]; JOINTS];
-        self.apply_direct(&input, &mut output);
-        // Timing reads the states that the output reads, before they move on.
-        self.bank.project(&input, &mut state.filters);
-        let timing = self.timing.evaluate(input.as_flattened(), &state.filters);
-        self.bank.advance(&input, &mut state.filters, &mut output);
+        let log2 = match &self.linear {
+            // Guards are constant: code of number types that N leaves out is not linked.
+            Linear::Float(linear) if N::FLOAT => linear.step(&input, state.view(), &mut output),
+            Linear::Fixed(linear) if N::INTEGER => linear.step(&input, state.view(), &mut output),
+            _ => 0.0,
+        };
 
         let targets = self.targets(state, heading, source.root, &local, &output, &world);
         solve(&self.skeleton, source, &world, &targets, styled);
         for ((styled, source), weight) in styled.rotations.iter_mut().zip(&source.rotations).zip(&state.controls.mask) {
-            *styled = nlerp(source, styled, *weight);
+            if *weight != 1.0 {
+                *styled = nlerp(source, styled, *weight);
+            }
         }
-        timing
+        Timing { duration: exp2(log2) }
     }
 
     /// Heading-local positions, m; the root's row holds its travel since the last frame and its height.
@@ -75,15 +82,6 @@ impl<const JOINTS: usize, const STATES: usize> Translator<'_, JOINTS, STATES> {
             }
         }
         input
-    }
-
-    /// `y = bias + D_joint u`.
-    fn apply_direct(&self, input: &[[f32; 3]; JOINTS], output: &mut [[f32; 3]; JOINTS]) {
-        for (((output, bias), direct), [u0, u1, u2]) in output.iter_mut().zip(self.bias).zip(self.direct).zip(input) {
-            let [a, b, c, d, e, f, g, h, i] = *direct;
-            let [x, y, z] = *bias;
-            *output = [x + a * u0 + b * u1 + c * u2, y + d * u0 + e * u1 + f * u2, z + g * u0 + h * u1 + i * u2];
-        }
     }
 
     /// World positions to reach: the source's moved by `strength` times the learned difference.
@@ -115,14 +113,6 @@ impl<const JOINTS: usize, const STATES: usize> Translator<'_, JOINTS, STATES> {
             *target = position + shift + heading.to_world(difference(styled, local));
         }
         targets
-    }
-}
-
-impl TimingHead<'_> {
-    fn evaluate(&self, input: &[f32], states: &[f32]) -> Timing {
-        let [low, high] = self.range;
-        let log2 = self.bias + kernel::dot(self.input, input) + kernel::dot(self.states, states);
-        Timing { duration: exp2(log2.max(low).min(high)) }
     }
 }
 

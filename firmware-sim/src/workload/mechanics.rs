@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use kinesic::Pack;
+use kinesic::model::{Floats, Integers, Numbers};
 use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_host::quantise::to_int8;
 use kinesic_host::rig::Rig;
@@ -17,22 +18,27 @@ const SEED: u64 = 3;
 const MODEL: &str = "models/mechanics.kin";
 
 pub fn prepare(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
-    over_a_walk(name, "mechanics.kin", model()?, frames)
+    over_a_walk::<Floats>(name, "mechanics.kin", model()?, frames)
 }
 
 /// The same model with int8 weights.
 pub fn int8(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
     let provenance = Provenance { tool: "kinesic-firmware-sim".to_owned(), seed: SEED, ..Provenance::default() };
     let pack = to_int8(&PackFile::from_bytes(&model()?), &provenance)?;
-    over_a_walk(name, "mechanics-i8.kin", pack, frames)
+    over_a_walk::<Integers>(name, "mechanics-i8.kin", pack, frames)
 }
 
-fn over_a_walk(name: &str, pack_name: &'static str, pack: Vec<u8>, frames: usize) -> Result<Prepared, WorkloadError> {
+fn over_a_walk<N: Numbers>(
+    name: &str,
+    pack_name: &'static str,
+    pack: Vec<u8>,
+    frames: usize,
+) -> Result<Prepared, WorkloadError> {
     let refused = |_| WorkloadError::Refused { name: name.to_owned() };
     let words = aligned(&pack);
     let rig = Rig::from_pack(&Pack::load(&bytemuck::cast_slice(&words)[..pack.len()]).map_err(refused)?)?;
     let clip = made::walk_on(&rig.skeleton, frames, SEED);
-    on_host::<Mechanics>(name, pack_name, pack, &numbers(&rig, &clip, JOINTS))
+    on_host::<Mechanics<N>>(name, pack_name, pack, &numbers(&rig, &clip, JOINTS))
 }
 
 pub fn model() -> Result<Vec<u8>, WorkloadError> {

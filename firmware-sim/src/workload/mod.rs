@@ -10,6 +10,8 @@ mod kernel;
 mod limit;
 mod mechanics;
 mod pipeline;
+mod modal;
+mod network;
 pub mod recorded;
 mod translator;
 
@@ -99,6 +101,10 @@ const ALL: &[(&str, Make)] = &[
     ("translator-body", translator::whole_body),
     ("mechanics", mechanics::prepare),
     ("mechanics-i8", mechanics::int8),
+    ("translator-i16", translator::per_joint_fixed),
+    ("translator-body-i16", translator::whole_body_fixed),
+    ("network", network::f32),
+    ("network-i8", network::i8),
     ("components", components::prepare),
     ("limit", limit::prepare),
     ("face", face::prepare),
@@ -107,6 +113,10 @@ const ALL: &[(&str, Make)] = &[
     ("pipeline", pipeline::prepare),
     ("kernel-f32", kernel::f32),
     ("kernel-i8", kernel::i8),
+    ("kernel-modal", modal::f32),
+    ("kernel-modal-i16", modal::i16),
+    ("peer-nalgebra", modal::nalgebra),
+    ("peer-embedded-nn", network::embedded_nn),
 ];
 
 /// Makes pack and input of a workload and runs it on the host.

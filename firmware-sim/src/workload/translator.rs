@@ -2,10 +2,11 @@
 //! stable dynamics. Cost depends on the shape alone, so nothing has to be trained to measure it.
 
 use kinesic_host::clip::Clip;
-use kinesic_host::pack::Provenance;
+use kinesic_host::pack::{PackFile, Provenance};
+use kinesic_host::quantise::to_int16;
 use kinesic_host::rig::Rig;
 use kinesic_host::translate::{BankModel, TimingModel, TranslatorModel};
-use kinesic_workloads::translator::{JOINTS, PerJoint, WholeBody};
+use kinesic_workloads::translator::{JOINTS, PerJoint, PerJointFixed, WholeBody, WholeBodyFixed};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 
@@ -17,6 +18,22 @@ const ORDER: usize = 40;
 const DRIVES: usize = 8;
 
 pub fn per_joint(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
+    let (pack, frames) = made_per_joint(frames);
+    on_host::<PerJoint>(name, "translator.kin", pack, &frames)
+}
+
+/// The same in fixed point.
+pub fn per_joint_fixed(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
+    let (pack, frames) = made_per_joint(frames);
+    on_host::<PerJointFixed>(name, "translator-i16.kin", fixed(&pack)?, &frames)
+}
+
+fn fixed(pack: &[u8]) -> Result<Vec<u8>, WorkloadError> {
+    let provenance = Provenance { tool: "kinesic-firmware-sim".to_owned(), seed: SEED, ..Provenance::default() };
+    Ok(to_int16(&PackFile::from_bytes(pack), &provenance)?)
+}
+
+fn made_per_joint(frames: usize) -> (Vec<u8>, Vec<Vec<f32>>) {
     let mut random = ChaCha8Rng::seed_from_u64(SEED);
     let mut block = || -> [f64; 16] {
         let [a, b, c, d] = stable(&mut random);
@@ -28,13 +45,23 @@ pub fn per_joint(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
     };
     let bank = (0..JOINTS).map(|_| (0..ORDER / 2).map(|_| block()).collect()).collect();
     let (rig, clip) = (made::rig(), made::walk(frames, SEED));
-    let pack = pack(&rig, &clip, BankModel::PerJoint(bank), Vec::new());
-    on_host::<PerJoint>(name, "translator.kin", pack, &numbers(&rig, &clip, JOINTS))
+    (pack(&rig, &clip, BankModel::PerJoint(bank), Vec::new()), numbers(&rig, &clip, JOINTS))
 }
 
 pub fn whole_body(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
+    let (pack, frames) = made_whole_body(frames);
+    on_host::<WholeBody>(name, "translator-body.kin", pack, &frames)
+}
+
+/// The same in fixed point.
+pub fn whole_body_fixed(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
+    let (pack, frames) = made_whole_body(frames);
+    on_host::<WholeBodyFixed>(name, "translator-body-i16.kin", fixed(&pack)?, &frames)
+}
+
+fn made_whole_body(frames: usize) -> (Vec<u8>, Vec<Vec<f32>>) {
     let (rig, clip) = (made::rig(), made::walk(frames, SEED));
-    on_host::<WholeBody>(name, "translator-body.kin", shared(&rig, &clip), &numbers(&rig, &clip, JOINTS))
+    (shared(&rig, &clip), numbers(&rig, &clip, JOINTS))
 }
 
 /// The pack of one model for all joints of a rig.

@@ -85,7 +85,7 @@ impl Workload for I8 {
 
     #[inline(always)]
     fn step(model: &Self::Model<'_>, state: &mut Self::State) {
-        model.apply(&state.x, &mut state.y, |z| z);
+        model.apply(state.x.values(), &mut state.y, |z| z);
     }
 
     fn output(_: &Self::Model<'_>, state: &Self::State, digest: &mut Digest) {

@@ -13,11 +13,14 @@ pub mod kernel;
 pub mod limit;
 pub mod mechanics;
 pub mod pipeline;
+pub mod modal;
+pub mod peer;
 pub mod pose;
 pub mod translator;
 
 pub use digest::Digest;
 pub use frames::Frames;
+pub use kinesic::model::{Floats, Integers};
 
 /// The pack does not fit the workload's capacities, or its check failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

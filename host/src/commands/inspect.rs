@@ -135,6 +135,7 @@ fn model(pack: &Pack, meta: &ModelMeta, joints: usize) -> miette::Result<ModelRe
             let figures = json!({
                 "style": meta.style,
                 "form": format!("{:?}", meta.form),
+                "numbers": format!("{:?}", translator.number()).to_lowercase(),
                 "filter_states": 2 * meta.blocks,
                 "drives": meta.drives,
                 "multiply_adds_per_frame_before_kinematics": translator.multiply_adds(),

@@ -20,6 +20,7 @@ mod mix;
 mod modulate;
 mod output;
 mod pictures;
+mod precision;
 mod quantize;
 mod score;
 mod synth;

@@ -5,31 +5,34 @@ use std::path::PathBuf;
 use kinesic::Pack;
 use kinesic_host::pack::{Metric, PackFile};
 use kinesic_host::prepare::Source;
-use kinesic_host::quantise::{Difference, difference, to_int8};
+use kinesic_host::quantise::{Difference, difference, translated_difference};
 use kinesic_host::rig::Rig;
 use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
 
 use super::clips::{Reading, clip_paths};
 use super::output::{check_output, command_line, print_json, spinner, write_whole};
+use super::precision::Precision;
 
-/// Store the weights of a body-mechanics network as int8, for parts without an FPU and with little flash
+/// Store a body-mechanics network as int8 or a translator as int16, for parts without an FPU and with little flash
 ///
-/// Rows get a scale each, activations are int16, sums int32. With --clips the error against the f32 pack is measured, through the
-/// device's own code, and kept in the pack.
+/// Networks: int8 weights with a scale a row, int16 activations, int32 sums. Translators: int16 coefficients, int32 states,
+/// scaled so that no input can overflow. With --clips the error against the f32 pack is measured, through the device's own
+/// code, and kept in the pack.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
   kinesic quantize models/mechanics.kin --precision i8 --out mechanics-i8.kin
+  kinesic quantize models/weary.kin --precision i16 --clips walk.bvh --out weary-i16.kin
   kinesic quantize models/mechanics.kin --clips walk.bvh dances/ --out mechanics-i8.kin --json")]
 pub struct Args {
-    /// Body-mechanics pack in f32
+    /// Pack in f32: body mechanics or a translator
     #[arg(value_name = "PACK.kin")]
     pack: PathBuf,
-    /// Number type of the weights
-    #[arg(long, value_enum, default_value_t = Precision::I8)]
-    precision: Precision,
-    /// Clips to measure the error on: files, folders, tables
+    /// Number type; by default what the pack's model has: i8 for body mechanics, i16 for a translator
+    #[arg(long, value_enum)]
+    precision: Option<Precision>,
+    /// Clips to measure the error on, best none that the pack was trained on: files, folders, tables
     #[arg(long, value_name = "CLIPS", num_args = 1..)]
     clips: Vec<PathBuf>,
     /// Pack to write
@@ -45,13 +48,6 @@ pub struct Args {
     reading: Reading,
 }
 
-/// Number type of the weights.
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-enum Precision {
-    /// int8 with a scale a row
-    I8,
-}
-
 #[derive(Serialize)]
 struct Summary {
     out: String,
@@ -64,29 +60,38 @@ struct Summary {
 /// Runs the command.
 pub fn run(args: &Args) -> miette::Result<()> {
     check_output(&args.out, "kin")?;
-    let Precision::I8 = args.precision;
     let file = PackFile::read(&args.pack).into_diagnostic()?;
     let mut provenance =
         file.provenance().ok_or_else(|| miette!("{}: its provenance cannot be read", args.pack.display()))?;
-    provenance.notes.push(format!("int8 weights, from a pack that was made with: {}", provenance.command));
+    let has_translator =
+        file.pack().into_diagnostic()?.metadata().models.iter().any(|model| model.translator().is_some());
+    let precision = args.precision.unwrap_or(if has_translator { Precision::I16 } else { Precision::I8 });
+    if precision == Precision::F32 {
+        return Err(miette!(
+            help = "expected i16 for a translator, i8 for body mechanics",
+            "--precision f32: the pack is f32"
+        ));
+    }
+    let name = precision.name();
+    provenance.notes.push(format!("{name}, from a pack that was made with: {}", provenance.command));
     provenance.command = command_line();
     let bar = spinner();
-    let rounded = PackFile::from_bytes(&to_int8(&file, &provenance)?);
+    let rounded = PackFile::from_bytes(&precision.of(file.bytes().to_vec(), &provenance)?);
     let (before, after) = (file.pack().into_diagnostic()?, rounded.pack().into_diagnostic()?);
     let mut error = None;
     let mut count = 0;
     if !args.clips.is_empty() {
         let paths = clip_paths(&args.clips)?;
         count = paths.len();
-        let found = measure(args, &paths, &before, &after, &|news| bar.set_message(news))?;
-        let metric = |name: &str, value| Metric { name: name.to_owned(), value };
-        provenance.metrics.push(metric("int8_mean_deg", found.mean_deg));
-        provenance.metrics.push(metric("int8_p99_deg", found.p99_deg));
-        provenance.metrics.push(metric("int8_worst_deg", found.worst_deg));
-        provenance.metrics.push(metric("int8_frames", found.frames as f64));
+        let found = measure(args, precision, &paths, &before, &after, &|news| bar.set_message(news))?;
+        let metric = |what: &str, value| Metric { name: format!("{name}_{what}"), value };
+        provenance.metrics.push(metric("mean_deg", found.mean_deg));
+        provenance.metrics.push(metric("p99_deg", found.p99_deg));
+        provenance.metrics.push(metric("worst_deg", found.worst_deg));
+        provenance.metrics.push(metric("frames", found.frames as f64));
         error = Some(found);
     }
-    let bytes = to_int8(&file, &provenance)?;
+    let bytes = precision.of(file.bytes().to_vec(), &provenance)?;
     bar.finish_and_clear();
     write_whole(&args.out, &bytes)?;
     let summary = Summary {
@@ -112,6 +117,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
 
 fn measure(
     args: &Args,
+    precision: Precision,
     paths: &[PathBuf],
     before: &Pack,
     after: &Pack,
@@ -126,5 +132,9 @@ fn measure(
         let source = Source::read(path, &options).into_diagnostic()?;
         clips.push(rig.poses(&source.on_rig(&rig, fps).into_diagnostic()?));
     }
-    difference(before, after, &clips).into_diagnostic()
+    let found = match precision {
+        Precision::I8 => difference(before, after, &clips),
+        _ => translated_difference(before, after, &clips),
+    };
+    found.into_diagnostic()
 }

@@ -9,8 +9,8 @@ use nalgebra::{UnitQuaternion, Vector3};
 use super::dataset::MAX_WINDOW;
 use crate::rig::MAX_JOINTS;
 
-/// Units of a layer that the host steps.
-const MAX_UNITS: usize = 1024;
+/// Units of the hidden layer and the code together that the host steps.
+const MAX_UNITS: usize = 2048;
 
 /// The device's model at the host's capacity.
 pub type HostMechanics<'a> = BodyMechanics<'a, MAX_JOINTS, MAX_UNITS, MAX_WINDOW>;

@@ -75,6 +75,21 @@ impl PackWriter {
         self.tensor(name, TensorType::U16, columns, values.len(), bytemuck::cast_slice(values));
     }
 
+    /// Adds an i8 tensor of `values.len() / columns` rows.
+    pub fn i8s(&mut self, name: &str, columns: usize, values: &[i8]) {
+        self.tensor(name, TensorType::I8, columns, values.len(), bytemuck::cast_slice(values));
+    }
+
+    /// Adds an i16 tensor of `values.len() / columns` rows.
+    pub fn i16s(&mut self, name: &str, columns: usize, values: &[i16]) {
+        self.tensor(name, TensorType::I16, columns, values.len(), bytemuck::cast_slice(values));
+    }
+
+    /// Adds an i32 tensor of `values.len() / columns` rows.
+    pub fn i32s(&mut self, name: &str, columns: usize, values: &[i32]) {
+        self.tensor(name, TensorType::I32, columns, values.len(), bytemuck::cast_slice(values));
+    }
+
     /// Adds a layer with int8 weights, an i32 scale and an i32 bias a row: names of weights, scale, bias.
     pub fn integer_layer(&mut self, [weights, scale, bias]: [&str; 3], layer: &IntegerLayer) {
         let bytes = bytemuck::cast_slice(&layer.weights);

@@ -22,7 +22,7 @@ const CODE: usize = 10;
 const COUNT: usize = 8;
 const KEYS: usize = 5;
 
-pub type Device<'a> = Pipeline<'a, JOINTS, 1024, UNITS, 20, COUNT, KEYS>;
+pub type Device<'a> = Pipeline<'a, JOINTS, 1024, { UNITS + 12 }, 20, COUNT, KEYS>;
 pub type State = PipelineState<JOINTS, 1024, 20, KEYS>;
 
 pub const ENGINES: [&str; 7] = [

@@ -2,4 +2,7 @@
 #![no_std]
 #![no_main]
 
-kinesic_image::image!(kinesic_image::workloads::mechanics::Mechanics, "mechanics-i8.kin");
+kinesic_image::image!(
+    kinesic_image::workloads::mechanics::Mechanics<kinesic_image::workloads::Integers>,
+    "mechanics-i8.kin"
+);

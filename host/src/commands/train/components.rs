@@ -16,6 +16,7 @@ use super::report::{ReportArgs, components::page};
 use super::resume::ResumeArgs;
 use crate::commands::clips::Reading;
 use crate::commands::output::{check_output, command_line, print_json, spinner, write_whole};
+use crate::commands::precision::Precision;
 
 /// Style weights of the trade-off curve.
 const CURVE: [f64; 8] = [0.0, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0];
@@ -41,6 +42,9 @@ pub struct Args {
     /// Pack to write
     #[arg(long, value_name = "FILE.kin")]
     out: PathBuf,
+    /// Number type of the pack: style components have f32 only
+    #[arg(long, value_enum, default_value_t = Precision::F32)]
+    precision: Precision,
     /// Name of the style (default: the pack's file name)
     #[arg(long, value_name = "NAME")]
     name: Option<String>,
@@ -103,6 +107,7 @@ fn count(text: &str) -> Result<Count, String> {
 /// Runs the command.
 pub fn run(args: &Args) -> miette::Result<()> {
     check_output(&args.out, "kin")?;
+    args.precision.check("style components", None)?;
     args.report.check(&args.out)?;
     let reading = args.reading.options()?;
     let bar = spinner();

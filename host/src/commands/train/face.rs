@@ -11,6 +11,7 @@ use serde::Serialize;
 
 use super::report::{ReportArgs, face::page};
 use crate::commands::output::{check_output, command_line, print_json, spinner, write_whole};
+use crate::commands::precision::Precision;
 
 /// Learn how strongly faces show an expression, and how it moves their landmarks
 ///
@@ -35,6 +36,9 @@ pub struct Args {
     /// Pack to write
     #[arg(long, value_name = "FILE.kin")]
     out: PathBuf,
+    /// Number type of the pack: faces have f32 only
+    #[arg(long, value_enum, default_value_t = Precision::F32)]
+    precision: Precision,
     /// Clusters of head pose
     #[arg(long, value_name = "N", default_value_t = 12)]
     clusters: usize,
@@ -67,6 +71,7 @@ fn share(text: &str) -> Result<f64, String> {
 /// Runs the command.
 pub fn run(args: &Args) -> miette::Result<()> {
     check_output(&args.out, "kin")?;
+    args.precision.check("faces", None)?;
     args.report.check(&args.out)?;
     if args.resume {
         eprintln!("{}: faces keep no checkpoint, training from the beginning", args.out.display());

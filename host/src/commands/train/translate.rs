@@ -18,6 +18,7 @@ use super::report::{ReportArgs, translate::page};
 use super::resume::ResumeArgs;
 use crate::commands::clips::{Pairs, Reading};
 use crate::commands::output::{check_output, command_line, print_json, spinner, write_whole};
+use crate::commands::precision::Precision;
 
 /// Learn to translate one manner of moving into another, from pairs of clips
 ///
@@ -35,6 +36,9 @@ pub struct Args {
     /// Pack to write
     #[arg(long, value_name = "FILE.kin")]
     out: PathBuf,
+    /// Number type of the pack: i16 needs no FPU and half the flash
+    #[arg(long, value_enum, default_value_t = Precision::F32)]
+    precision: Precision,
     /// Name of the style (default: the pack's file name)
     #[arg(long, value_name = "NAME")]
     style: Option<String>,
@@ -104,6 +108,7 @@ enum Mirror {
 /// Runs the command.
 pub fn run(args: &Args) -> miette::Result<()> {
     check_output(&args.out, "kin")?;
+    args.precision.check("translators", Some(Precision::I16))?;
     args.report.check(&args.out)?;
     let paths = args.pairs.paths()?;
     let options = args.reading.options()?;
@@ -166,14 +171,14 @@ pub fn run(args: &Args) -> miette::Result<()> {
         baselines: trained.baselines.clone(),
     };
     let poses = |clips: &mut dyn Iterator<Item = &Clip>| clips.map(|clip| rig.poses(clip)).collect::<Vec<_>>();
-    let preview = PackFile::from_bytes(&trained.model.pack(&rig, &provenance));
+    let preview = PackFile::from_bytes(&args.precision.of(trained.model.pack(&rig, &provenance), &provenance)?);
     let sources = poses(&mut clips.iter().map(|(neutral, _)| neutral));
     let targets = poses(&mut clips.iter().map(|(_, styled)| styled));
     trained.model.strength =
         plausible(&preview.pack().into_diagnostic()?, &rig, &sources, &targets).into_diagnostic()?;
     let report = evaluate(&preview.pack().into_diagnostic()?, &rig, &trained.baselines, &named).into_diagnostic()?;
     provenance.metrics = metrics(&trained, &report);
-    let bytes = trained.model.pack(&rig, &provenance);
+    let bytes = args.precision.of(trained.model.pack(&rig, &provenance), &provenance)?;
     write_whole(&args.out, &bytes)?;
     let file = PackFile::from_bytes(&bytes);
     args.report.write(&args.out, &file, page(&trained, &report, &named[0], &rig, &file)?)?;

@@ -1,9 +1,13 @@
-//! From f32 packs to packs with int8 weights.
+//! From f32 packs to packs with int8 weights (networks) or int16 coefficients (translators).
+
+mod translator;
+
+pub use translator::to_int16;
 
 use kinesic::kernel::{LARGEST_ACTIVATION, MOST_COLUMNS, PRE_ACTIVATION_BITS, ROWS, TILE};
 use kinesic::mechanics::{Decoupled, FEATURES, INPUT_SCALE, OUTPUT_BITS};
 use kinesic::model::{LoadError, TensorType};
-use kinesic::{MechanicsState, Pack, Pose};
+use kinesic::{MechanicsState, Pack, Pose, TranslatorState};
 
 use nalgebra::UnitQuaternion;
 use serde::Serialize;
@@ -11,6 +15,7 @@ use serde::Serialize;
 use crate::mechanics::HostMechanics;
 use crate::pack::{PackFile, PackWriter, Provenance};
 use crate::rig::MAX_JOINTS;
+use crate::translate::HostTranslator;
 
 /// Largest size of a weight in int8.
 const LARGEST_WEIGHT: f64 = 127.0;
@@ -34,15 +39,36 @@ pub enum QuantiseError {
     Load(#[from] LoadError),
     /// Nothing in it has an int8 form.
     #[error("the pack holds no body mechanics: found {found}")]
-    #[diagnostic(help("int8 is for networks; translators and components stay in f32"))]
+    #[diagnostic(help(
+        "int8 is for networks; translators have int16 (--precision i16), components and faces stay in f32"
+    ))]
     NoNetwork {
         /// What it holds.
         found: String,
     },
+    /// Nothing in it has an int16 form.
+    #[error("the pack holds no translator: found {found}")]
+    #[diagnostic(help(
+        "int16 is for translators; networks have int8 (--precision i8), components and faces stay in f32"
+    ))]
+    NoTranslator {
+        /// What it holds.
+        found: String,
+    },
     /// It is done already.
-    #[error("the weights of the pack are int8 already")]
+    #[error("the numbers of the pack are {number} already")]
     #[diagnostic(help("quantise the f32 pack that it was made from"))]
-    Done,
+    Done {
+        /// Their type.
+        number: &'static str,
+    },
+    /// A pole too near the unit circle, or a pair of poles that are coupled too strongly.
+    #[error("block {block} has a pole so near the unit circle, or a coupling so strong, that int16 cannot hold it")]
+    #[diagnostic(help("train with fewer states (--order), or keep the f32 pack"))]
+    Pole {
+        /// Index of the 2 x 2 block.
+        block: usize,
+    },
     /// A layer has more columns than sums can hold.
     #[error("the layer {layer} has {found} columns, int32 sums hold at most {MOST_COLUMNS}")]
     #[diagnostic(help("train a smaller network: --hidden, --code"))]
@@ -124,11 +150,10 @@ pub fn to_int8(file: &PackFile, provenance: &Provenance) -> Result<Vec<u8>, Quan
     let pack = file.pack()?;
     let metadata = pack.metadata();
     let Some(meta) = metadata.models.iter().find_map(|model| model.mechanics()) else {
-        let found = format!("{:?}", pack.kind()).to_lowercase();
-        return Err(QuantiseError::NoNetwork { found });
+        return Err(QuantiseError::NoNetwork { found: named(&pack) });
     };
     if pack.number(LAYERS[0].weights)? == TensorType::I8 {
-        return Err(QuantiseError::Done);
+        return Err(QuantiseError::Done { number: "int8" });
     }
     let (hidden, code) = (meta.hidden as usize, meta.code as usize);
     let outputs = 4 * metadata.joints.len().saturating_sub(1);
@@ -156,6 +181,11 @@ pub fn to_int8(file: &PackFile, provenance: &Provenance) -> Result<Vec<u8>, Quan
     Ok(out.finish(provenance))
 }
 
+/// What a pack holds, in a word.
+fn named(pack: &Pack) -> String {
+    format!("{:?}", pack.kind()).to_lowercase()
+}
+
 /// A tiled matrix, untiled.
 fn row_major(pack: &Pack, name: &'static str, rows: usize, columns: usize) -> Result<Vec<f32>, LoadError> {
     let tiles: &[[f32; ROWS]] = pack.slice(name, rows.div_ceil(ROWS) * columns)?;
@@ -179,30 +209,74 @@ pub struct Difference {
 /// Steps the features over the clips and compares what the two networks predict of them, through the device's code: the
 /// networks' raw output, before decoupling, which hides most of the difference.
 pub fn difference(before: &Pack, after: &Pack, clips: &[Vec<Pose<MAX_JOINTS>>]) -> Result<Difference, LoadError> {
-    let joints = before.metadata().joints.len();
-    let (mut angles, mut frames) = (Vec::new(), 0);
+    let mut angles = Angles::new(before.metadata().joints.len());
     let (first, second) = (HostMechanics::load(before)?, HostMechanics::load(after)?);
     let mut state = Box::new(MechanicsState::new());
     let mut parts = Decoupled::identity();
     let (mut a, mut b) = (Pose::identity(), Pose::identity());
     for poses in clips {
-        frames += poses.len();
         *state = MechanicsState::new();
         for pose in poses {
             first.step(&mut state, pose, &mut parts);
             first.predict(state.features(), state.pose(), &mut a);
             second.predict(state.features(), state.pose(), &mut b);
-            let pairs = a.rotations.iter().zip(&b.rotations).take(joints).skip(1);
-            // Of the rotation between them: exact for small angles, where an arc cosine is not.
-            let between = |(a, b): (&UnitQuaternion<f32>, &UnitQuaternion<f32>)| {
-                let between = a.cast::<f64>().inverse() * b.cast::<f64>();
-                2.0 * between.imag().norm().atan2(between.w.abs())
-            };
-            angles.extend(pairs.map(between).map(f64::to_degrees));
+            angles.add(&a, &b);
         }
     }
-    angles.sort_by(f64::total_cmp);
-    let mean_deg = angles.iter().sum::<f64>() / angles.len().max(1) as f64;
-    let p99_deg = angles.get(angles.len() * 99 / 100).copied().unwrap_or(0.0);
-    Ok(Difference { frames, mean_deg, p99_deg, worst_deg: angles.last().copied().unwrap_or(0.0) })
+    Ok(angles.finish())
+}
+
+/// Translates the clips with both packs, each from the state that its first pose leads to, and compares the styled poses.
+pub fn translated_difference(
+    before: &Pack,
+    after: &Pack,
+    clips: &[Vec<Pose<MAX_JOINTS>>],
+) -> Result<Difference, LoadError> {
+    let mut angles = Angles::new(before.metadata().joints.len());
+    let (first, second) = (HostTranslator::load(before)?, HostTranslator::load(after)?);
+    let mut states = [Box::new(TranslatorState::new()), Box::new(TranslatorState::new())];
+    let (mut a, mut b) = (Pose::identity(), Pose::identity());
+    for poses in clips {
+        if let Some(pose) = poses.first() {
+            first.start(&mut states[0], pose);
+            second.start(&mut states[1], pose);
+        }
+        for pose in poses {
+            first.step(&mut states[0], pose, &mut a);
+            second.step(&mut states[1], pose, &mut b);
+            angles.add(&a, &b);
+        }
+    }
+    Ok(angles.finish())
+}
+
+/// Angles between the joints of two poses, frame by frame.
+struct Angles {
+    joints: usize,
+    frames: usize,
+    degrees: Vec<f64>,
+}
+
+impl Angles {
+    fn new(joints: usize) -> Self {
+        Self { joints, frames: 0, degrees: Vec::new() }
+    }
+
+    fn add(&mut self, a: &Pose<MAX_JOINTS>, b: &Pose<MAX_JOINTS>) {
+        self.frames += 1;
+        // Of the rotation between them: exact for small angles, where an arc cosine is not.
+        let between = |(a, b): (&UnitQuaternion<f32>, &UnitQuaternion<f32>)| {
+            let between = a.cast::<f64>().inverse() * b.cast::<f64>();
+            (2.0 * between.imag().norm().atan2(between.w.abs())).to_degrees()
+        };
+        self.degrees.extend(a.rotations.iter().zip(&b.rotations).take(self.joints).skip(1).map(between));
+    }
+
+    fn finish(mut self) -> Difference {
+        self.degrees.sort_by(f64::total_cmp);
+        let mean_deg = self.degrees.iter().sum::<f64>() / self.degrees.len().max(1) as f64;
+        let p99_deg = self.degrees.get(self.degrees.len() * 99 / 100).copied().unwrap_or(0.0);
+        let worst_deg = self.degrees.last().copied().unwrap_or(0.0);
+        Difference { frames: self.frames, mean_deg, p99_deg, worst_deg }
+    }
 }
