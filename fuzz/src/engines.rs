@@ -112,7 +112,7 @@ fn limit(pack: &Pack, frames: &mut Frames) {
     model.start(&mut state, &frames.pose());
     for _ in 0..STEPS {
         let pose = frames.pose();
-        model.step(&mut state, (frames.next() % 8 != 0).then_some(&pose), &mut out);
+        model.step(&mut state, (!frames.next().is_multiple_of(8)).then_some(&pose), &mut out);
         assert!(out.is_sound(model.joints()), "{out:?}");
         for (joint, (lower, upper)) in model.table().lower.iter().zip(model.table().upper).enumerate() {
             let ranges = lower.iter().zip(upper);

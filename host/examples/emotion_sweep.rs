@@ -53,7 +53,7 @@ fn row(path: &str, emotion: &HostEmotion) {
     let steady: Vec<[f32; 2]> = (0..=20).map(|part| extremes(&play(emotion, 240, &|_| part as f32 / 20.0))).collect();
     let largest = |of: &[[f32; 2]], at: usize| of.iter().map(|x| x[at]).fold(0.0, f32::max);
     let swept = extremes(&play(emotion, 240, &wave));
-    let leaping = extremes(&play(emotion, 240, &|t| if (2.0 * t) as usize % 2 == 0 { 0.0 } else { 1.0 }));
+    let leaping = extremes(&play(emotion, 240, &|t| if ((2.0 * t) as usize).is_multiple_of(2) { 0.0 } else { 1.0 }));
     let [moved, faster] = jumps(emotion);
     let name = Path::new(path).file_stem().unwrap_or_default().to_string_lossy();
     println!(
@@ -94,7 +94,7 @@ fn step(emotion: &HostEmotion, state: &mut State, dt: f32) -> Positions {
 fn play(emotion: &HostEmotion, rate: usize, part: &dyn Fn(f32) -> f32) -> Vec<Positions> {
     let mut state = start(emotion, part(0.0));
     let frame = |frame: usize| {
-        if frame % (rate / 30) == 0 {
+        if frame.is_multiple_of(rate / 30) {
             state.strength = strengths(emotion, part(frame as f32 / rate as f32));
         }
         step(emotion, &mut state, 1.0 / rate as f32)
@@ -110,8 +110,8 @@ fn apart(a: &Positions, b: &Positions) -> f32 {
 fn extremes(frames: &[Positions]) -> [f32; 2] {
     let mut most = [0f32; 2];
     for three in frames.windows(3) {
-        for joint in 0..three[0].len() {
-            let (a, b) = (three[1][joint] - three[0][joint], three[2][joint] - three[1][joint]);
+        for ((first, second), third) in three[0].iter().zip(&three[1]).zip(&three[2]) {
+            let (a, b) = (second - first, third - second);
             most = [most[0].max(240.0 * b.norm()), most[1].max(240.0 * 240.0 * (b - a).norm())];
         }
     }

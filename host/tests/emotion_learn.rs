@@ -138,7 +138,7 @@ fn the_commands_work_together() {
     };
     let mut rows = String::from("file\tlabel\tweariness\n");
     for (index, example) in examples(&LEVELS, 1).iter().enumerate() {
-        example.clip.write(&folder.path().join(format!("{index}.bvh"))).unwrap();
+        example.clip.write(folder.path().join(format!("{index}.bvh"))).unwrap();
         let level = example.levels[0].unwrap();
         let label = if level < 0.3 {
             "fresh"
@@ -234,7 +234,7 @@ fn styles_of_unseen_takes_are_put_in_order() {
         }
         let path = list.path().join("labels.tsv");
         std::fs::write(&path, rows).unwrap();
-        let rows = labels::read(&path, &[order.clone()]).unwrap();
+        let rows = labels::read(&path, std::slice::from_ref(&order)).unwrap();
         assert_eq!(rows.len(), 12);
         // Takes 1 and 2 of each style teach, 3 and 4 are read.
         let second = |row: &Labelled| {
@@ -243,7 +243,7 @@ fn styles_of_unseen_takes_are_put_in_order() {
         let (held, kept): (Vec<_>, Vec<_>) = rows.into_iter().partition(second);
         let (rig, kept) = real(&folder, kept, None);
         let (rig, held) = real(&folder, held, Some(rig));
-        let trained = train(&rig, action, &[order.name.clone()], &kept, &TrainOptions::default()).unwrap();
+        let trained = train(&rig, action, std::slice::from_ref(&order.name), &kept, &TrainOptions::default()).unwrap();
         assert_eq!(trained.cut, cut, "{action}");
         let file = packed(&rig, &trained);
         let pack = file.pack().unwrap();

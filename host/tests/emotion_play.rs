@@ -200,7 +200,9 @@ fn a_walk_keeps_its_direction_through_changes() {
     let (mut most, mut sum) = (0f32, 0f32);
     for change in 0..80 {
         // There and back at ever other phases.
-        (0..37 + change).for_each(|_| drop(step(&device, &mut state, 0.011)));
+        for _ in 0..37 + change {
+            step(&device, &mut state, 0.011);
+        }
         let before = course(&state);
         state.strength[0] = if change % 2 == 0 { 1.0 } else { 0.0 };
         device.change(&mut state);

@@ -342,7 +342,7 @@ fn the_command_makes_packs_and_tables() {
     let pack = file.pack().unwrap();
     let models = pack.metadata().models;
     assert_eq!(models.iter().filter(|model| model.limits().is_some()).count(), 1);
-    let pipeline = Pipeline::<19, 1024, 0, 0, 0>::load(&pack).unwrap();
+    let pipeline = Pipeline::<19, 1024, 0, 0, 0, 0>::load(&pack).unwrap();
     let mut state = PipelineState::new();
     let (mut out, source) = (Pose::identity(), Pose::identity());
     pipeline.step(&mut state, Some(&source), &mut out);

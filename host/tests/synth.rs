@@ -37,7 +37,7 @@ fn motions_have_the_strength_length_and_rate_that_were_asked_for() {
     assert!(speed(&weary) < 0.8 * speed(&calm), "{} {}", speed(&weary), speed(&calm));
     let scores = [&calm, &weary].map(|report| report["attributes"][0]["score"][0].as_f64().unwrap());
     assert!(scores[1] > scores[0] + 0.5, "{scores:?}");
-    let read = clip::read(&folder.path().join("weary.bvh")).unwrap();
+    let read = clip::read(folder.path().join("weary.bvh")).unwrap();
     assert_eq!(read.frames(), 601);
     assert!((read.frame_time - 1.0 / 120.0).abs() < 1e-6);
     // Every format that a motion is written in.

@@ -13,8 +13,8 @@ use core::fmt::Write;
 
 use engine::Engine;
 use kinesic::face::FaceSynth;
-use kinesic::{LoadError, Pack};
 use kinesic::pose::{World, forward};
+use kinesic::{LoadError, Pack};
 use memory::{Floats as _, Memory, Write as _, memory};
 
 /// Joints that a pose holds.

@@ -9,9 +9,9 @@ mod face;
 mod kernel;
 mod limit;
 mod mechanics;
-mod pipeline;
 mod modal;
 mod network;
+mod pipeline;
 pub mod recorded;
 mod translator;
 

@@ -12,9 +12,9 @@ mod frames;
 pub mod kernel;
 pub mod limit;
 pub mod mechanics;
-pub mod pipeline;
 pub mod modal;
 pub mod peer;
+pub mod pipeline;
 pub mod pose;
 pub mod translator;
 

@@ -11,6 +11,8 @@ pub use crate::mechanics::{JOINTS, UNITS, WINDOW};
 pub const COUNT: usize = 30;
 /// Filter states and drives of the translator.
 pub const STATES: usize = 48;
+/// No emotion plays.
+const KEYS: usize = 0;
 
 /// `Pipeline::step` with all engines.
 #[derive(Clone, Copy, Debug)]
@@ -19,14 +21,14 @@ pub struct Whole;
 /// RAM of the pipeline and its caller: the state, the pose that comes in and the pose that goes out.
 #[derive(Clone, Debug)]
 pub struct Running {
-    state: PipelineState<JOINTS, STATES, WINDOW, COUNT>,
+    state: PipelineState<JOINTS, STATES, WINDOW, KEYS>,
     source: Pose<JOINTS>,
     out: Pose<JOINTS>,
 }
 
 /// Takes an input frame as [`pose::load`] does.
 impl Workload for Whole {
-    type Model<'p> = Pipeline<'p, JOINTS, STATES, UNITS, WINDOW, COUNT>;
+    type Model<'p> = Pipeline<'p, JOINTS, STATES, UNITS, WINDOW, COUNT, KEYS>;
     type State = Running;
 
     fn open(pack: &[u8]) -> Result<Self::Model<'_>, Refused> {
