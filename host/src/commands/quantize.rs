@@ -106,13 +106,31 @@ pub fn run(args: &Args) -> miette::Result<()> {
     }
     println!("{}: {} bytes instead of {}", summary.out, summary.bytes, summary.bytes_f32);
     match &summary.error {
-        Some(e) => println!(
-            "against f32, degrees a joint over {} frames: mean {:.3}, 99 % below {:.3}, worst {:.3}",
-            e.frames, e.mean_deg, e.p99_deg, e.worst_deg
-        ),
+        Some(e) => {
+            println!(
+                "against f32, degrees a joint over {} frames: mean {:.3}, 99 % below {:.3}, worst {:.3}",
+                e.frames, e.mean_deg, e.p99_deg, e.worst_deg
+            );
+            if e.mean_deg > FAR {
+                println!("note: far apart. {}", far(precision));
+            }
+        }
         None => println!("the error was not measured: name clips with --clips"),
     }
     Ok(())
+}
+
+/// Mean angle to f32 from which the command says so, degrees.
+const FAR: f64 = 0.5;
+
+fn far(precision: Precision) -> &'static str {
+    match precision {
+        Precision::I16 => {
+            "Poses more than 16 deviations from those of the training are held there, f32 extrapolates them: measure on \
+             clips of the motion that it was trained on, or keep the f32 pack"
+        }
+        _ => "Keep the f32 pack, or train with more units",
+    }
 }
 
 fn measure(

@@ -30,30 +30,30 @@ const TRANSLATOR: [Workload; 2] = [
     Workload {
         name: "translator",
         size: "a model a joint, 25 joints, 8225 multiply-adds",
-        microseconds: [35_478, 11_753, 561, 641, 528, 178],
+        microseconds: [34_442, 11_418, 534, 610, 497, 168],
     },
     Workload {
         name: "translator-body",
         size: "whole body, 25 joints, 4825 multiply-adds",
-        microseconds: [28_456, 9_497, 443, 508, 382, 152],
+        microseconds: [27_428, 9_146, 383, 439, 351, 132],
     },
 ];
 const MECHANICS: [Workload; 2] = [
     Workload {
         name: "mechanics",
         size: "f32, 31 joints, 13992 multiply-adds",
-        microseconds: [50_221, 16_582, 802, 911, 619, 275],
+        microseconds: [50_218, 16_503, 686, 779, 599, 243],
     },
     Workload {
         name: "mechanics-i8",
         size: "the same after kinesic quantize",
-        microseconds: [12_917, 4_435, 640, 935, 870, 231],
+        microseconds: [12_759, 4_319, 540, 627, 553, 198],
     },
 ];
 const COMPONENTS: [Workload; 1] = [Workload {
     name: "components",
     size: "23 joints, 4140 multiply-adds",
-    microseconds: [25_290, 8_420, 381, 435, 328, 131],
+    microseconds: [25_297, 8_399, 350, 401, 328, 123],
 }];
 const FACE: [Workload; 1] =
-    [Workload { name: "face", size: "12 clusters, 10 hidden units", microseconds: [7_578, 2_630, 141, 163, 123, 47] }];
+    [Workload { name: "face", size: "12 clusters, 10 hidden units", microseconds: [7_580, 2_625, 136, 157, 123, 45] }];
