@@ -22,6 +22,7 @@ pub fn workloads(engine: &str) -> &'static [Workload] {
         "mechanics" => &MECHANICS,
         "components" => &COMPONENTS,
         "face" => &FACE,
+        "emotion" => &EMOTION,
         _ => &[],
     }
 }
@@ -57,3 +58,15 @@ const COMPONENTS: [Workload; 1] = [Workload {
 }];
 const FACE: [Workload; 1] =
     [Workload { name: "face", size: "12 clusters, 10 hidden units", microseconds: [7_580, 2_625, 136, 157, 123, 45] }];
+const EMOTION: [Workload; 2] = [
+    Workload {
+        name: "emotion-play",
+        size: "a frame, 19 joints, 13 keyframes",
+        microseconds: [13_701, 4_616, 253, 289, 249, 91],
+    },
+    Workload {
+        name: "emotion-change",
+        size: "a change of strength, 40 components",
+        microseconds: [191_143, 62_855, 2_297, 2_642, 1_980, 763],
+    },
+];

@@ -150,7 +150,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let bytes = trained.model.pack(&rig, &provenance);
     write_whole(&args.out, &bytes)?;
     let file = PackFile::from_bytes(&bytes);
-    args.report.write(&args.out, &file, page(&trained, &training, unseen.as_ref(), &scorer, &kept))?;
+    args.report.write(&args.out, &file, page(&trained, &training, unseen.as_ref(), &scorer, &kept, &pack)?)?;
     bar.finish_and_clear();
     let summary = Summary {
         pack: args.out.display().to_string(),

@@ -1,9 +1,13 @@
 //! The report of `kinesic train emotion`.
 
+use kinesic::Pack;
 use kinesic_host::emotion::Trained;
 use kinesic_host::emotion::evaluate::{Report, Scorer, mean};
 use kinesic_host::emotion::motions::Example;
-use kinesic_host::report::{Chart, Line, Report as Page, Table};
+use kinesic_host::emotion::play::{Settings, Strengths, play};
+use kinesic_host::report::{Chart, Line, Report as Page, Table, figures};
+use kinesic_host::rig::Rig;
+use miette::IntoDiagnostic;
 
 /// Strengths along a curve.
 const STEPS: usize = 41;
@@ -15,12 +19,15 @@ pub fn page(
     held_out: Option<&Report>,
     scorer: &Scorer,
     examples: &[Example],
-) -> Page {
+    pack: &Pack,
+) -> miette::Result<Page> {
     let model = &trained.model;
     let mut page = Page::new(
         &format!("Strength of emotions in a motion: {}", model.motion),
         "A ranking function for each emotion, and a network from strengths to keyframes (Chan, Shum, Wang, Yi, Wei, Ho 2019).",
     );
+    page.heading("What it does");
+    drawn(&mut page, trained, pack)?;
     page.heading("How well it ranks");
     let rows = |name: &str, report: &Report| -> Vec<Vec<String>> {
         let row = |a: &kinesic_host::emotion::evaluate::AttributeReport| {
@@ -60,19 +67,13 @@ pub fn page(
             })
             .collect(),
     });
-    for (index, attribute) in model.attributes.iter().enumerate() {
-        let points = examples.iter().filter_map(|example| {
-            Some((example.levels.get(index).copied()??, *mean(&scorer.read(&example.clip)).get(index)?))
-        });
-        let mut points: Vec<(f64, f64)> = points.collect();
-        points.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
-        page.chart(&Chart {
-            caption: format!("{}: strength that is read from every training clip, by its label.", attribute.name),
-            x: "label",
-            y: "strength",
-            lines: vec![Line { name: attribute.name.clone(), points }],
-        });
-    }
+    page.table(&Table {
+        caption: "Strengths that are read from the training clips, by label (0 the weakest label of an order, 1 the strongest, or the \
+                  numbers of the column)"
+            .into(),
+        head: ["attribute", "label", "clips", "mean", "from", "to"].map(Into::into).to_vec(),
+        rows: (0..model.attributes.len()).flat_map(|index| by_label(trained, index, scorer, examples)).collect(),
+    });
     page.heading("What it makes").text(&format!(
         "{} keyframes of {} components, which hold {:.1} % of the variance; a joint is {:.1} cm from the spline between keyframes, and \
          {:.1} cm from the training motions at the strengths that these have (root mean square).",
@@ -91,7 +92,55 @@ pub fn page(
     for note in &trained.notes {
         page.text(&format!("Note: {note}."));
     }
-    page
+    Ok(page)
+}
+
+/// The motion at the weakest, a middle and the strongest strength of every attribute, played by the device's code.
+fn drawn(page: &mut Page, trained: &Trained, pack: &Pack) -> miette::Result<()> {
+    let attributes = &trained.model.attributes;
+    let rig = Rig::from_pack(pack).into_diagnostic()?;
+    let fps = f64::from(trained.model.frame_rate);
+    let middle = |[low, high]: [f32; 2]| low.midpoint(high);
+    for (index, attribute) in attributes.iter().enumerate() {
+        let [low, high] = attribute.strength;
+        let mut shown = Vec::new();
+        for (name, strength) in [("weakest", low), ("middle", low.midpoint(high)), ("strongest", high)] {
+            let mut from = Strengths::default();
+            from.iter_mut().zip(attributes).for_each(|(to, attribute)| *to = middle(attribute.strength));
+            from[index] = strength;
+            let played = play(pack, &Settings { from, to: from, fps, seconds: None }).into_diagnostic()?;
+            shown.push((format!("{}, {name}: {strength:.2}", attribute.name), rig.clip(&played.poses, 1.0 / fps)));
+        }
+        let rows: Vec<_> = shown.iter().map(|(name, clip)| (name.as_str(), clip)).collect();
+        page.figure(
+            &figures(&rows),
+            "Eight moments of the motion as the device plays it; other attributes in the middle of their range. Strength is in units of \
+             the labels; the range is that of 98 % of the training motions. Left limbs blue, right ones orange.",
+        );
+    }
+    Ok(())
+}
+
+/// Rows of one attribute: label, clips, mean and range of the strengths that are read.
+fn by_label(trained: &Trained, index: usize, scorer: &Scorer, examples: &[Example]) -> Vec<Vec<String>> {
+    let read = examples.iter().filter_map(|example| {
+        Some((example.levels.get(index).copied()??, *mean(&scorer.read(&example.clip)).get(index)?))
+    });
+    let mut read: Vec<(f64, f64)> = read.collect();
+    read.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    let row = |same: &[(f64, f64)]| {
+        let total: f64 = same.iter().map(|(_, strength)| strength).sum();
+        let cell = |strength: f64| format!("{strength:.2}");
+        vec![
+            trained.model.attributes[index].name.clone(),
+            format!("{:.2}", same[0].0),
+            same.len().to_string(),
+            cell(total / same.len() as f64),
+            cell(same[0].1),
+            cell(same[same.len() - 1].1),
+        ]
+    };
+    read.chunk_by(|a, b| a.0 == b.0).map(row).collect()
 }
 
 /// Time from the first keyframe to the last, from the network's positions and velocities.
