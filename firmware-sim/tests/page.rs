@@ -334,7 +334,8 @@ fn the_slider_of_a_face_gives_the_hosts_landmarks_and_its_picture() {
             assert_eq!(f32s(&reading["landmarks"]), host.landmarks.as_flattened(), "{by}");
             let read = [reading["strength"].as_f64(), reading["target"].as_f64(), reading["after"].as_f64()];
             let expected = [host.reading.strength, host.reading.target, host.strength_after];
-            assert_eq!(read.map(Option::unwrap), expected.map(f64::from));
+            // As f32, which is what the core has: the reader of JSON may be off by a digit of a double.
+            assert_eq!(read.map(|x| x.unwrap() as f32), expected);
             let offsets = host.offsets.map(|offset| offset.map(|x| x * scale as f32));
             let warped = Warp::new(&small, &offsets).unwrap().apply(&picture).unwrap().to_rgba8();
             let shown = pixels(&mut at, "kinesic.face.shown");
@@ -344,9 +345,10 @@ fn the_slider_of_a_face_gives_the_hosts_landmarks_and_its_picture() {
                 "{}, change {by:.3}: off by {off:.2} grey levels, moved by {moved:.2}; {} ms",
                 face.name, now["cost"]
             );
-            // At the host's own warps what is off is their coarser grid; elsewhere two of them are mixed.
-            let share = if changes.contains(&by) { 0.25 } else { 0.6 };
-            assert!(off < share * moved, "{off} of {moved}");
+            // At the host's own warps what is off is their coarser grid; elsewhere two of them are mixed, which shows where a closed mouth
+            // opens. Of 255 grey levels.
+            let most = if changes.contains(&by) { 0.5 } else { 6.0 };
+            assert!(off < most && off < moved, "{off} of {moved}");
         }
         shot(&mut at, &format!("face-{index}.png"));
     }

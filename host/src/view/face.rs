@@ -20,7 +20,7 @@ const SIDE: u32 = 800;
 /// Quality of the page's JPEG, of 100.
 const QUALITY: u8 = 92;
 /// Warps on each side of the picture as it is.
-const STEPS: usize = 6;
+const STEPS: usize = 12;
 /// Cells of a warp in the face's unit.
 const CELLS: f64 = 24.0;
 /// Parts of a pixel in which a displacement is written.

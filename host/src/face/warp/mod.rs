@@ -26,6 +26,8 @@ pub use resample::ResampleError;
 const UNFOLDED: f64 = 0.02;
 /// First damping of the spline, and the factor by which it grows while the map folds.
 const DAMPING: [f64; 2] = [1e-5, 8.0];
+/// Halvings of the last step of the damping: what folds by a hair must not be damped eight times as much as its neighbour.
+const HALVINGS: usize = 5;
 /// Pairs of upper and lower inner lip.
 const LIPS: [(usize, usize); 3] = [(61, 67), (62, 66), (63, 65)];
 /// What stays of the opening of the mouth at least: lips that cross would fold the picture.
@@ -69,17 +71,31 @@ impl Warp {
         let region = Region::new(&from, &to, scale);
         let centres: Vec<_> = to.iter().chain(region.forehead()).copied().collect();
         let wanted: Vec<_> = from.iter().zip(&to).map(|(from, to)| from - to).collect();
-        let mut damping = DAMPING[0];
-        loop {
+        let damped = |damping: f64| {
             let spline = Spline::fit(&centres, &wanted, scale, damping);
             let grid = Grid::new(&region, scale, |at| spline.at(at));
-            if grid.least_jacobian() >= UNFOLDED {
-                let miss = |i: usize| (grid.at(to[i]) - wanted[i]).norm();
-                let missed = (CONTOUR..POINTS).map(miss).fold(0.0, f64::max);
-                return Ok(Self { grid, missed, damping });
+            (grid.least_jacobian() >= UNFOLDED).then_some(grid)
+        };
+        let [mut damping, step] = DAMPING;
+        let mut grid = loop {
+            match damped(damping) {
+                Some(grid) => break grid,
+                None => damping *= step,
             }
-            damping *= DAMPING[1];
+        };
+        if damping > DAMPING[0] {
+            let mut folded = damping / step;
+            for _ in 0..HALVINGS {
+                let middle = (folded * damping).sqrt();
+                match damped(middle) {
+                    Some(better) => (grid, damping) = (better, middle),
+                    None => folded = middle,
+                }
+            }
         }
+        let miss = |i: usize| (grid.at(to[i]) - wanted[i]).norm();
+        let missed = (CONTOUR..POINTS).map(miss).fold(0.0, f64::max);
+        Ok(Self { grid, missed, damping })
     }
 
     /// The picture through the map. Pixels outside the face are copied.

@@ -42,7 +42,9 @@ pub fn page(
         report.attributes.iter().map(row).collect()
     };
     page.table(&Table {
-        caption: "Pairs of clips with different labels, and how many of them are in that order by strength".into(),
+        caption:
+            "Pairs of clips with different labels, and how many of them are in that order by strength (chance: 50 %)"
+                .into(),
         head: ["", "clips", "pairs", "right", "Spearman"].map(Into::into).to_vec(),
         rows: rows("trained on", training)
             .into_iter()

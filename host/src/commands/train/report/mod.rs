@@ -75,6 +75,9 @@ fn device(report: &mut Report, file: &PackFile) -> miette::Result<()> {
 fn value(value: &Value) -> String {
     match value {
         Value::String(text) => text.clone(),
+        Value::Object(named) => {
+            named.iter().map(|(name, v)| format!("{name} {}", self::value(v))).collect::<Vec<_>>().join(", ")
+        }
         Value::Array(values) => values.iter().map(self::value).collect::<Vec<_>>().join(" to "),
         Value::Number(number) => match number.as_f64() {
             Some(x) if x.fract() != 0.0 => format!("{x:.4}").trim_end_matches('0').to_owned(),
