@@ -49,7 +49,7 @@ impl Curve {
         Self::summed(motion.frames(), std::iter::once(motion))
     }
 
-    /// Of all motions, each cut into [`MOMENTS`].
+    /// Of all motions, each cut into 121 moments.
     pub fn of_all<'a>(motions: impl Iterator<Item = &'a Segment>) -> Self {
         Self::summed(MOMENTS, motions)
     }

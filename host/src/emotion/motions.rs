@@ -18,7 +18,7 @@ use crate::rig::Rig;
 pub struct Example {
     /// Name for messages.
     pub name: String,
-    /// The clip, at [`FRAME_RATE`](super::segment::FRAME_RATE).
+    /// The clip, at [`FRAME_RATE`].
     pub clip: Clip,
     /// Level of each attribute, `None` where nobody said.
     pub levels: Vec<Option<f64>>,

@@ -159,7 +159,7 @@ fn words(pose: &HostPose, joints: usize) -> impl Iterator<Item = u32> {
     pose.root.iter().chain(rotations).map(|x| x.to_bits())
 }
 
-/// [`hash`] of the bits of poses.
+/// Digest of the bits of poses: 16 hexadecimal digits.
 pub fn digest(poses: &[HostPose], joints: usize) -> String {
     hash(poses.iter().flat_map(|pose| words(pose, joints)))
 }
