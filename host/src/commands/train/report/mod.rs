@@ -114,6 +114,7 @@ fn explain(figure: &str) -> &'static str {
         "hidden" => "units of the hidden layer",
         "code" => "numbers that the autoencoder's code has",
         "weights" => "type of the weights in flash",
+        "numbers" => "type of the coefficients in flash",
         "body_height_m" => "height of the body that it was trained on, m",
         "hip_height_m" => "height of its hips, m",
         "components" => "basic motions, K (emotions: principal components of a keyframe)",
