@@ -11,7 +11,7 @@
 //! | [`mod@rank`] | the ranking function: primal Newton over a graph of pairs; faces use it too |
 //! | [`Curvature`] | what its Hessian needs of the samples |
 //! | `pairs`, [`choose_cost`] | which motion shows more than which; the cost by validation |
-//! | [`mod@regress`], `hidden` | strength -> features: ten tanh units, the output layer eliminated |
+//! | [`mod@regress`], `hidden` | strength -> features: a few tanh units, the output layer eliminated |
 //! | [`train()`] | from labelled clips to a model |
 //! | [`evaluate`] | reads the strength of clips; pair accuracy, rank correlation |
 //! | [`EmotionModel`] | what training makes, as a pack and back |
