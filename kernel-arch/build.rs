@@ -31,8 +31,11 @@ fn main() {
     if mainline {
         println!("cargo::rustc-cfg=kinesic_mainline");
     }
-    if target.ends_with("eabihf") && (target.starts_with("thumbv7em") || mainline) && !HELIUM.contains(&cpu) {
-        println!("cargo::rustc-cfg=kinesic_column_tile");
+    if target.ends_with("eabihf") && (target.starts_with("thumbv7em") || mainline) {
+        println!("cargo::rustc-cfg=kinesic_root");
+        if !HELIUM.contains(&cpu) {
+            println!("cargo::rustc-cfg=kinesic_column_tile");
+        }
     }
 }
 

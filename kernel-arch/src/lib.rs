@@ -1,16 +1,16 @@
 //! The two loops that kinesic's matrices run through: [`tile`], four rows of int8 times int16, and [`column_tile`], eight rows
-//! of f32.
+//! of f32; and the square root, [`sqrt`].
 //!
-//! [`portable`] is the definition of both, in safe Rust. Where the compiler does not find the right instructions there is
-//! assembly: SMLAD on cores with the DSP extension, MULS on ARMv6-M, block loads of the single-precision FPU. On every other core
-//! the portable loops run. The bits are the same: integers are modulo 2^32, floats have one order and two roundings a
-//! multiply-add. Without the feature `asm` the crate holds no unsafe code.
+//! [`portable`] is the definition of the loops, in safe Rust. Where the compiler does not find the right instructions there is
+//! assembly: SMLAD on cores with the DSP extension, MULS on ARMv6-M, block loads and VSQRT of the single-precision FPU. On every
+//! other core the portable loops run. The bits are the same: integers are modulo 2^32, floats have one order and two roundings a
+//! multiply-add, roots are correctly rounded. Without the feature `asm` the crate holds no unsafe code.
 #![no_std]
 
 #[cfg(kinesic_tile)]
 mod arm;
 pub mod portable;
-#[cfg(kinesic_column_tile)]
+#[cfg(kinesic_root)]
 mod vfp;
 
 /// Sixteen weights, four rows by four columns: a word a row, its bytes the columns 0, 2, 1, 3 (lowest byte first), so that
@@ -41,6 +41,16 @@ pub fn column_tile(weights: &[[f32; 8]], x: &[f32], sums: &mut [f32; 8]) {
 
 #[cfg(kinesic_column_tile)]
 pub use vfp::column_tile;
+
+/// Square root, correctly rounded: the same bits on every core, but for the sign of the NaN below zero.
+#[cfg(not(kinesic_root))]
+#[inline]
+pub fn sqrt(x: f32) -> f32 {
+    libm::sqrtf(x)
+}
+
+#[cfg(kinesic_root)]
+pub use vfp::sqrt;
 
 /// The word of a row: its four columns in the order that [`Weights`] has.
 pub const fn pack_weights([c0, c1, c2, c3]: [i8; 4]) -> u32 {

@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use super::model::Emotion;
 use super::place::{Place, part_of};
 use super::spline::Taps;
+use crate::kernel::sqrt;
 use crate::model::ATTRIBUTES;
 use crate::pose::{Heading, World};
 
@@ -175,5 +176,5 @@ fn length(values: impl Iterator<Item = f32>) -> f32 {
     for value in values {
         squares += value * value;
     }
-    libm::sqrtf(squares)
+    sqrt(squares)
 }

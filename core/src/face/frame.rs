@@ -1,6 +1,7 @@
 //! The face's own frame: where it is, how large, how rolled; and the landmarks in it.
 
 use super::{CONTOUR, Landmarks, MOVING};
+use crate::kernel::sqrt;
 
 /// Which landmarks move, region by region: right eye with brow, left eye with brow, nose, mouth without its inner corners.
 pub const INNER: [u8; MOVING] = [
@@ -30,14 +31,14 @@ impl FaceFrame {
         let right = mean(landmarks, 36, 6);
         let left = mean(landmarks, 42, 6);
         let [x, y] = [left[0] - right[0], left[1] - right[1]];
-        let apart = libm::sqrtf(x * x + y * y);
+        let apart = sqrt(x * x + y * y);
         let origin = mean_of(inner(landmarks));
         let mut squares = 0.0;
         for [x, y] in inner(landmarks) {
             let (x, y) = (x - origin[0], y - origin[1]);
             squares = squares + x * x + y * y;
         }
-        let scale = libm::sqrtf(squares / MOVING as f32);
+        let scale = sqrt(squares / MOVING as f32);
         let sound = landmarks.iter().flatten().all(|x| x.is_finite())
             && scale.is_finite()
             && scale > f32::MIN_POSITIVE
@@ -73,7 +74,7 @@ impl FaceFrame {
             *y -= middle[1];
             squares = squares + *x * *x + *y * *y;
         }
-        let scale = libm::sqrtf(squares / CONTOUR as f32);
+        let scale = sqrt(squares / CONTOUR as f32);
         let inverse = if scale > f32::MIN_POSITIVE { 1.0 / scale } else { 0.0 };
         for value in contour.as_flattened_mut() {
             *value *= inverse;

@@ -2,6 +2,8 @@
 
 use core::f32::consts::FRAC_2_PI;
 
+use kinesic_kernel_arch::sqrt;
+
 /// Where the rational tanh reaches 1.
 const TANH_END: f32 = 4.97;
 
@@ -39,7 +41,7 @@ pub fn sin_cos(x: f32) -> (f32, f32) {
 /// the Taylor series of the arc tangent to degree 15. Absolute error below 1e-6. Cost: 12 multiply-adds, two divisions, a root.
 pub fn quadrant_angle(sin: f32, cos: f32) -> f32 {
     let half = sin / (1.0 + cos);
-    let u = half / (1.0 + libm::sqrtf(1.0 + half * half));
+    let u = half / (1.0 + sqrt(1.0 + half * half));
     let t = u * u;
     let high = 1.0 / 9.0 + t * (-1.0 / 11.0 + t * (1.0 / 13.0 - t * (1.0 / 15.0)));
     4.0 * u * (1.0 + t * (-1.0 / 3.0 + t * (1.0 / 5.0 + t * (-1.0 / 7.0 + t * high))))

@@ -21,7 +21,7 @@ pub use quantised::{
 };
 pub use tiled::{ROWS, Tiled};
 
-pub(crate) use kinesic_kernel_arch::scale16;
+pub(crate) use kinesic_kernel_arch::{scale16, sqrt};
 
 /// `sum(a[i] * b[i])` in index order over the shorter length. Cost: one multiply-add per element.
 pub fn dot(a: &[f32], b: &[f32]) -> f32 {

@@ -1,5 +1,7 @@
 //! One coordinate under position, velocity and acceleration limits.
 
+use crate::kernel::sqrt;
+
 /// Share of the acceleration that catches up with the target; the rest follows the target's own.
 pub(super) const CATCH_UP: f32 = 0.5;
 
@@ -24,7 +26,7 @@ pub(super) struct Coordinate {
 /// `D(w) = (n + 1) w - n (n + 1) / 2 change`, `n = floor(w / change)`. Cost: a root, two divisions.
 pub(super) fn reach(room: f32, change: f32) -> f32 {
     let steps = room.max(0.0) / change;
-    let whole = (0.5 * (libm::sqrtf(1.0 + 8.0 * steps) - 1.0)) as u32 as f32;
+    let whole = (0.5 * (sqrt(1.0 + 8.0 * steps) - 1.0)) as u32 as f32;
     change * (steps / (whole + 1.0) + 0.5 * whole)
 }
 

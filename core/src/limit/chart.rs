@@ -9,7 +9,7 @@ use core::f32::consts::{PI, TAU};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::model::JointKind;
-use crate::kernel::{quadrant_angle, sin_cos};
+use crate::kernel::{quadrant_angle, sin_cos, sqrt};
 use crate::pose::unit;
 
 /// Below this share of its length a direction is no direction.
@@ -92,7 +92,7 @@ impl Frame {
                 self.rotation([t * w - s * x, t * x + s * w, t * y - s * z, t * z + s * y])
             }
             JointKind::Ball => {
-                let angle = libm::sqrtf(b * b + c * c);
+                let angle = sqrt(b * b + c * c);
                 let (sin, cos) = sin_cos(0.5 * angle);
                 let ratio = if angle > 1e-4 { sin / angle } else { 0.5 };
                 let (y, z) = (b * ratio, c * ratio);
@@ -104,7 +104,7 @@ impl Frame {
 
 /// Angle of the vector `(cos, sin)` of any length, -pi..pi; `None` for a vector of (nearly) none.
 fn arc(sin: f32, cos: f32) -> Option<f32> {
-    let norm = libm::sqrtf(sin * sin + cos * cos);
+    let norm = sqrt(sin * sin + cos * cos);
     if norm > SMALL {
         let angle = quadrant_angle((sin / norm).abs().min(1.0), (cos / norm).abs().min(1.0));
         let angle = if cos < 0.0 { PI - angle } else { angle };
@@ -129,12 +129,12 @@ fn twist([w, x, ..]: &[f32; 4]) -> Option<f32> {
 /// Twist about the first axis and rotation vector of the swing after it: `q = swing twist`.
 fn swing_twist(q: [f32; 4], at: f32) -> [f32; 3] {
     let [w, x, y, z] = q;
-    let length = libm::sqrtf(w * w + x * x);
+    let length = sqrt(w * w + x * x);
     let twist = twist(&q).unwrap_or(at);
     let (sin, cos) = sin_cos(0.5 * twist);
     let flip = if w * cos + x * sin < 0.0 { -1.0 } else { 1.0 };
     let (y, z) = (flip * (y * cos - z * sin), flip * (z * cos + y * sin));
-    let side = libm::sqrtf(y * y + z * z);
+    let side = sqrt(y * y + z * z);
     let angle = 2.0 * arc(side, length).unwrap_or(0.0);
     let ratio = if side > 1e-4 { angle / side } else { 2.0 };
     [twist, y * ratio, z * ratio]
@@ -147,7 +147,7 @@ fn chain([w, x, y, z]: [f32; 4], [at0, _, at2]: [f32; 3]) -> [f32; 3] {
     let first = if sin * sin + cos * cos > 1e-8 { arc(sin, cos).unwrap_or(at0) } else { at0 };
     let (sh, ch) = sin_cos(0.5 * first);
     let [w, x, y, z] = [ch * w + sh * x, ch * x - sh * w, ch * y + sh * z, ch * z - sh * y];
-    let long = libm::sqrtf(w * w + z * z);
+    let long = sqrt(w * w + z * z);
     let third = arc(z, w).map_or(at2, |half| 2.0 * half);
     let second = if long > SMALL { arc((y * w + x * z) / long, long).unwrap_or(0.0) } else { 0.5 * PI };
     [first, 2.0 * second, third]

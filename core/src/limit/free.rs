@@ -3,7 +3,7 @@
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::axis::{CATCH_UP, reach};
-use crate::kernel::{quadrant_angle, sin_cos};
+use crate::kernel::{quadrant_angle, sin_cos, sqrt};
 use crate::pose::unit;
 
 /// The step of a frame: `error` is the way to the target, `went` the last step, `left` the error after it. The norms of the step
@@ -28,7 +28,7 @@ pub(super) fn within(v: Vector3<f32>, length: f32) -> Vector3<f32> {
 }
 
 pub(super) fn norm(v: Vector3<f32>) -> f32 {
-    libm::sqrtf(v.dot(&v))
+    sqrt(v.dot(&v))
 }
 
 /// Rotation vector of the shorter turn, 0..pi rad. Absolute error below 2e-6.

@@ -2,6 +2,8 @@
 
 use nalgebra::Vector3;
 
+use crate::kernel::sqrt;
+
 /// When a foot stands. A foot has two points, ankle and toes; one is enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Thresholds {
@@ -130,7 +132,7 @@ impl Foot {
         let (mut lands, mut stays, mut slowest) = (false, false, f32::MAX);
         for ((now, before), clearance) in points.iter().zip(&self.points).zip(clearance) {
             let moved = now - before;
-            let speed = libm::sqrtf(moved.dot(&moved)) / elapsed;
+            let speed = sqrt(moved.dot(&moved)) / elapsed;
             let height = now.y - clearance - self.ground;
             lands |= speed < limits.land_speed && height < limits.land_height;
             stays |= speed < limits.lift_speed && height < limits.lift_height;

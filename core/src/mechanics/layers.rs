@@ -166,21 +166,13 @@ impl<'a> Layer<'a> {
         Ok(Self { weights: Tiled::new(rows, columns, tiles).ok_or(shape)?, bias: pack.slice(bias, rows)? })
     }
 
-    /// `out` gets one value a row; what lies behind is left alone.
-    fn apply(&self, x: &[f32], out: &mut [f32]) {
-        let rows = self.bias.len().min(out.len());
-        if let Some((out, _)) = out.split_at_mut_checked(rows) {
-            for (out, bias) in out.iter_mut().zip(self.bias) {
-                *out = *bias;
-            }
-            self.weights.multiply_add(x, out);
-        }
-    }
-
+    /// `tanh(W x + b)`: `out` gets one value a row; what lies behind is left alone.
     fn apply_tanh(&self, x: &[f32], out: &mut [f32]) {
-        self.apply(x, out);
-        for out in out.iter_mut().take(self.bias.len()) {
-            *out = tanh(*out);
+        let Some(out) = out.get_mut(..self.bias.len()) else { return };
+        for ((sums, bias), out) in self.weights.sums(x).zip(self.bias.chunks(ROWS)).zip(out.chunks_mut(ROWS)) {
+            for ((out, bias), sum) in out.iter_mut().zip(bias).zip(sums) {
+                *out = tanh(bias + sum);
+            }
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::{Quaternion, UnitQuaternion};
 
-use crate::kernel::{quadrant_angle, sin_cos};
+use crate::kernel::{quadrant_angle, sin_cos, sqrt};
 use crate::pose::unit;
 
 /// Largest exponent of [`power`]; larger ones are cut.
@@ -11,7 +11,7 @@ const LARGEST: f32 = 32.0;
 /// Sine and cosine of half the angle, both >= 0, and the quaternion on that half of the sphere.
 fn half(q: &UnitQuaternion<f32>) -> (f32, f32, Quaternion<f32>) {
     let q = if q.w < 0.0 { -q.into_inner() } else { q.into_inner() };
-    (libm::sqrtf(q.i * q.i + q.j * q.j + q.k * q.k), q.w, q)
+    (sqrt(q.i * q.i + q.j * q.j + q.k * q.k), q.w, q)
 }
 
 /// Angle of a rotation, 0..pi rad. Absolute error below 2e-6.

@@ -2,6 +2,8 @@
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
+use crate::kernel::sqrt;
+
 use super::skeleton::Across;
 use super::{Skeleton, World, unit};
 
@@ -28,7 +30,7 @@ impl Heading {
     pub fn follow<const JOINTS: usize>(self, skeleton: &Skeleton, world: &World<JOINTS>) -> Self {
         let across = across(skeleton.across, &world.positions);
         let (x, z) = (across.x, across.z);
-        let norm = libm::sqrtf(x * x + z * z);
+        let norm = sqrt(x * x + z * z);
         // Forward is across x up: (-z, x) in the ground plane.
         if norm > 1e-3 { Self { sin: -z / norm, cos: x / norm } } else { self }
     }
@@ -46,7 +48,7 @@ impl Heading {
     /// This heading turned by an angle with this sine and cosine, to the left.
     pub fn turned(self, sin: f32, cos: f32) -> Self {
         let (s, c) = (self.sin * cos + self.cos * sin, self.cos * cos - self.sin * sin);
-        let norm = libm::sqrtf(s * s + c * c);
+        let norm = sqrt(s * s + c * c);
         if norm > 1e-3 { Self { sin: s / norm, cos: c / norm } } else { self }
     }
 

@@ -17,6 +17,8 @@ pub use solve::solve;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
+use crate::kernel::sqrt;
+
 /// Local rotations of up to `JOINTS` joints and the root's position.
 ///
 /// Joints past the skeleton's own are ignored.
@@ -50,7 +52,7 @@ impl<const JOINTS: usize> Default for Pose<JOINTS> {
 
 /// `q / |q|`, or the identity if `q` is (nearly) zero.
 pub(crate) fn unit(q: Quaternion<f32>) -> UnitQuaternion<f32> {
-    let norm = libm::sqrtf(q.coords.dot(&q.coords));
+    let norm = sqrt(q.coords.dot(&q.coords));
     if norm > 1e-6 { UnitQuaternion::new_unchecked(q / norm) } else { UnitQuaternion::identity() }
 }
 

@@ -2,6 +2,8 @@
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
+use crate::kernel::sqrt;
+
 use super::{Pose, Skeleton, World, unit};
 
 /// Steps of the rotation fit of a joint with several bones; it converges quadratically.
@@ -63,7 +65,7 @@ pub fn solve<const JOINTS: usize>(
 
 /// The smallest rotation that turns `bone` into the direction of `wanted`.
 fn swing(bone: Vector3<f32>, wanted: Vector3<f32>) -> UnitQuaternion<f32> {
-    let lengths = libm::sqrtf(bone.dot(&bone) * wanted.dot(&wanted));
+    let lengths = sqrt(bone.dot(&bone) * wanted.dot(&wanted));
     half_way(lengths + bone.dot(&wanted), bone.cross(&wanted), lengths)
 }
 
@@ -81,7 +83,7 @@ fn best_turn(bones: impl Iterator<Item = (Vector3<f32>, Vector3<f32>)> + Clone) 
                 // Weighted by the square of the bone's length, so that zero bones drop out.
                 let bone = turn * bone;
                 normal += Matrix3::from_diagonal_element(long) - bone * bone.transpose();
-                right += bone.cross(&wanted) * libm::sqrtf(long / wide);
+                right += bone.cross(&wanted) * sqrt(long / wide);
                 trace += long;
             }
         }
