@@ -31,12 +31,12 @@ pub fn tile(weights: &[Weights], inputs: &[Inputs], sums: &mut [i32; 4]) {
 #[cfg(kinesic_tile)]
 pub use arm::tile;
 
-/// `sums[row] += weights[column][row] * x[column]`, columns in order, over the shorter of `weights` and `x`. Bit-equal to
+/// `sum of weights[column][row] * x[column]` a row, columns in order, over the shorter of `weights` and `x`. Bit-equal to
 /// [`portable::column_tile`] on every core.
 #[cfg(not(kinesic_column_tile))]
 #[inline]
-pub fn column_tile(weights: &[[f32; 8]], x: &[f32], sums: &mut [f32; 8]) {
-    portable::column_tile(weights, x, sums);
+pub fn column_tile(weights: &[[f32; 8]], x: &[f32]) -> [f32; 8] {
+    portable::column_tile(weights, x)
 }
 
 #[cfg(kinesic_column_tile)]

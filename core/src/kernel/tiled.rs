@@ -50,11 +50,7 @@ impl<'a> Tiled<'a> {
     /// `W x`, a tile of rows after the other.
     #[inline]
     pub fn sums<'x>(&self, x: &'x [f32]) -> impl Iterator<Item = [f32; ROWS]> + use<'a, 'x> {
-        self.tiles.chunks_exact(self.columns.get()).map(move |tile| {
-            let mut sums = [0.0; ROWS];
-            column_tile(tile, x, &mut sums);
-            sums
-        })
+        self.tiles.chunks_exact(self.columns.get()).map(move |tile| column_tile(tile, x))
     }
 }
 

@@ -171,8 +171,11 @@ impl<'a> Layer<'a> {
         let Some(out) = out.get_mut(..self.bias.len()) else { return };
         for ((sums, bias), out) in self.weights.sums(x).zip(self.bias.chunks(ROWS)).zip(out.chunks_mut(ROWS)) {
             for ((out, bias), sum) in out.iter_mut().zip(bias).zip(sums) {
-                *out = tanh(bias + sum);
+                *out = bias + sum;
             }
+        }
+        for out in out {
+            *out = tanh(*out);
         }
     }
 }

@@ -53,7 +53,8 @@ impl<const JOINTS: usize> Default for Pose<JOINTS> {
 /// `q / |q|`, or the identity if `q` is (nearly) zero.
 pub(crate) fn unit(q: Quaternion<f32>) -> UnitQuaternion<f32> {
     let norm = sqrt(q.coords.dot(&q.coords));
-    if norm > 1e-6 { UnitQuaternion::new_unchecked(q / norm) } else { UnitQuaternion::identity() }
+    // One division, four products: divisions are the dearest operation of every core.
+    if norm > 1e-6 { UnitQuaternion::new_unchecked(q * (1.0 / norm)) } else { UnitQuaternion::identity() }
 }
 
 /// Normalised linear interpolation along the shorter arc: `a` at weight 0, `b` at weight 1.

@@ -98,14 +98,15 @@ fn best_turn(bones: impl Iterator<Item = (Vector3<f32>, Vector3<f32>)> + Clone) 
 fn solve_symmetric(m: &Matrix3<f32>, v: Vector3<f32>) -> Vector3<f32> {
     let (a, b, c) = (m.column(0).into_owned(), m.column(1).into_owned(), m.column(2).into_owned());
     let (bc, ca, ab) = (b.cross(&c), c.cross(&a), a.cross(&b));
-    Vector3::new(bc.dot(&v), ca.dot(&v), ab.dot(&v)) / a.dot(&bc)
+    Vector3::new(bc.dot(&v), ca.dot(&v), ab.dot(&v)) * (1.0 / a.dot(&bc))
 }
 
 /// The quaternion with this real and imaginary part; the identity where both vanish against `scale` (a half turn has no
 /// smallest rotation, and a bone without length no direction).
 fn half_way(real: f32, imaginary: Vector3<f32>, scale: f32) -> UnitQuaternion<f32> {
     if scale > 1e-12 && real > 1e-6 * scale {
-        unit(Quaternion::from_parts(real / scale, imaginary / scale))
+        let inverse = 1.0 / scale;
+        unit(Quaternion::from_parts(real * inverse, imaginary * inverse))
     } else {
         UnitQuaternion::identity()
     }
