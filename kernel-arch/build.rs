@@ -16,6 +16,7 @@ fn main() {
     if target.starts_with("thumbv6m") {
         println!("cargo::rustc-cfg=kinesic_narrow_multiply");
     }
+    soft_float(&target);
     if var("CARGO_FEATURE_ASM").is_err() {
         return;
     }
@@ -36,6 +37,17 @@ fn main() {
         if !HELIUM.contains(&cpu) {
             println!("cargo::rustc-cfg=kinesic_column_tile");
         }
+    }
+}
+
+/// Which sums and products stand for the compiler's: none where there is an FPU.
+fn soft_float(target: &str) {
+    let features = var("CARGO_CFG_TARGET_FEATURE").unwrap_or_default();
+    if var("CARGO_FEATURE_SOFT_FLOAT").is_err() {
+    } else if target.starts_with("thumbv6m") {
+        println!("cargo::rustc-cfg=kinesic_soft_float=\"thumb1\"");
+    } else if target.starts_with("riscv32") && !features.split(',').any(|feature| feature == "f") {
+        println!("cargo::rustc-cfg=kinesic_soft_float=\"riscv\"");
     }
 }
 

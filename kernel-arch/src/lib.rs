@@ -10,6 +10,7 @@
 #[cfg(kinesic_tile)]
 mod arm;
 pub mod portable;
+pub mod soft;
 #[cfg(kinesic_root)]
 mod vfp;
 

@@ -1,0 +1,241 @@
+//! Sums and products on the bits of f32.
+//!
+//! A significand lies at the top of a word, its leading one in bit 31: eight bits below the 24 that are kept are there to round by.
+
+const SIGN: u32 = 1 << 31;
+const INFINITY: u32 = 0xff << 23;
+const QUIET_NAN: u32 = INFINITY | 1 << 22;
+
+/// The exponent as it is stored, 0 to 255.
+#[inline(always)]
+fn exponent(bits: u32) -> i32 {
+    (bits << 1 >> 24) as i32
+}
+
+/// The significand of a normal number.
+#[inline(always)]
+fn significand(bits: u32) -> u32 {
+    bits << 8 | 1 << 31
+}
+
+/// `significand 2^(exponent - 158)`, with the sign in bit 8 of `exponent`: rounded to nearest, ties to even. Rounding up from the
+/// largest number gives infinity, as it must.
+#[inline(always)]
+fn round(significand: u32, signed_exponent: i32) -> u32 {
+    // The leading one adds one to the exponent's field.
+    let bits = (significand >> 8).wrapping_add((signed_exponent as u32).wrapping_sub(1) << 23);
+    let rest = significand & 0xff;
+    let up = u32::from(rest > 0x80) | u32::from(rest == 0x80) & bits;
+    bits.wrapping_add(up)
+}
+
+/// `a + b`.
+#[inline]
+pub fn add(a: u32, b: u32) -> u32 {
+    let (a, b) = if a << 1 < b << 1 { (b, a) } else { (a, b) };
+    let (high, low) = (exponent(a), exponent(b));
+    // Sums of what has exponent 254 may overflow; differences of what has less than 32 may be subnormal.
+    if high >= 254 || low == 0 || high < 32 {
+        return rare_add(a, b);
+    }
+    let apart = (high - low) as u32;
+    if apart > 25 {
+        // Less than half of the last place, even below a power of two.
+        return a;
+    }
+    let (large, small) = (significand(a) >> 1, significand(b) >> 1);
+    let moved = small >> apart;
+    // What is shifted out can only matter where the rest is just half of the last place: one bit stands for all of it.
+    let small = moved | u32::from(moved << apart != small);
+    let sum = if (a ^ b) & SIGN == 0 { large + small } else { large - small };
+    normalise(sum, high + 1 + (a >> 31 << 8) as i32)
+}
+
+/// Brings the leading one to bit 31, and rounds. No exponent may leave the range of normal numbers.
+#[inline(always)]
+fn normalise(mut sum: u32, mut exponent: i32) -> u32 {
+    if sum as i32 >= 0 {
+        (sum, exponent) = (sum << 1, exponent - 1);
+        if sum as i32 >= 0 {
+            if sum == 0 {
+                return 0;
+            }
+            // Bit by bit: few are cancelled as a rule, and these cores have no instruction that counts them.
+            while sum as i32 >= 0 {
+                (sum, exponent) = (sum << 1, exponent - 1);
+            }
+        }
+    }
+    round(sum, exponent)
+}
+
+/// `a * b`.
+#[inline]
+pub fn mul(a: u32, b: u32) -> u32 {
+    let (of_a, of_b) = (exponent(a), exponent(b));
+    let sum = of_a + of_b - 127;
+    if of_a == 0 || of_b == 0 || of_a == 255 || of_b == 255 || !(1..254).contains(&sum) {
+        return rare_mul(a, b);
+    }
+    let product = u64::from(significand(a)) * u64::from(significand(b));
+    // Sixteen bits of the low half are zero: there is a sticky bit in the rest.
+    let mut top = (product >> 32) as u32 | u32::from(product as u32 != 0);
+    let mut exponent = sum + 1 + ((a ^ b) >> 31 << 8) as i32;
+    if top as i32 >= 0 {
+        (top, exponent) = (top << 1 | (product as u32) >> 31, exponent - 1);
+    }
+    round(top, exponent)
+}
+
+/// A number that is neither zero nor infinite nor NaN: its significand with the leading one in bit 31, and its exponent, below 1
+/// for what is subnormal.
+fn parts(bits: u32) -> (u32, i32) {
+    match exponent(bits) {
+        0 => {
+            let zeros = (bits << 8).leading_zeros() as i32;
+            (bits << 8 << zeros, 1 - zeros)
+        }
+        exponent => (significand(bits), exponent),
+    }
+}
+
+/// `significand 2^(exponent - 158)` of any exponent, with a sticky lowest bit.
+fn round_any(significand: u32, exponent: i32, sign: u32) -> u32 {
+    if exponent >= 255 {
+        return sign | INFINITY;
+    }
+    if exponent >= 1 {
+        return sign | round(significand, exponent);
+    }
+    // Subnormal: the leading one has its own place in the field, and rounding may carry into the exponent.
+    let shift = (1 - exponent) as u32;
+    let (moved, lost) = if shift < 32 { (significand >> shift, significand << (32 - shift)) } else { (0, significand) };
+    let moved = moved | u32::from(lost != 0);
+    let (bits, rest) = (moved >> 8, moved & 0xff);
+    sign | (bits + (u32::from(rest > 0x80) | u32::from(rest == 0x80) & bits))
+}
+
+/// [`add`] for all numbers.
+#[cold]
+#[inline(never)]
+pub fn rare_add(a: u32, b: u32) -> u32 {
+    let (a, b) = if a << 1 < b << 1 { (b, a) } else { (a, b) };
+    if a & !SIGN > INFINITY {
+        return a | QUIET_NAN;
+    }
+    if a & !SIGN == INFINITY {
+        return if b == a ^ SIGN { QUIET_NAN } else { a };
+    }
+    if b << 1 == 0 {
+        // Two zeros of different signs make a positive one.
+        return if a << 1 == 0 { a & b } else { a };
+    }
+    let ((large, high), (small, low)) = (parts(a), parts(b));
+    // In 64 bits: 32 more below the significands, where at most 25 of them are needed to round right.
+    let apart = (high - low).min(40) as u32;
+    let large = u64::from(large) << 31;
+    let small = u64::from(small) << 31;
+    let moved = small >> apart;
+    let moved = moved | u64::from(moved << apart != small);
+    let sum = if (a ^ b) & SIGN == 0 { large + moved } else { large - moved };
+    if sum == 0 {
+        return 0;
+    }
+    let zeros = sum.leading_zeros();
+    let sum = sum << zeros;
+    let top = (sum >> 32) as u32 | u32::from(sum as u32 != 0);
+    round_any(top, high + 1 - zeros as i32, a & SIGN)
+}
+
+/// [`mul`] for all numbers.
+#[cold]
+#[inline(never)]
+pub fn rare_mul(a: u32, b: u32) -> u32 {
+    let sign = (a ^ b) & SIGN;
+    let (size_a, size_b) = (a & !SIGN, b & !SIGN);
+    if size_a > INFINITY || size_b > INFINITY {
+        return QUIET_NAN;
+    }
+    if size_a == 0 || size_b == 0 {
+        return if size_a == INFINITY || size_b == INFINITY { QUIET_NAN } else { sign };
+    }
+    if size_a == INFINITY || size_b == INFINITY {
+        return sign | INFINITY;
+    }
+    let ((of_a, high), (of_b, low)) = (parts(a), parts(b));
+    let product = u64::from(of_a) * u64::from(of_b);
+    let zeros = product.leading_zeros();
+    let product = product << zeros;
+    let top = (product >> 32) as u32 | u32::from(product as u32 != 0);
+    round_any(top, high + low - 126 - zeros as i32, sign)
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::*;
+
+    /// Words of which sums and products are hard: all exponents, significands of few and of many ones, neighbours of powers of two.
+    fn words(count: usize) -> impl Iterator<Item = [u32; 2]> {
+        let mut seed = 0x9e37_79b9_7f4a_7c15u64;
+        let mut next = move || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 32) as u32
+        };
+        (0..count).map(move |_| {
+            let (a, b, choice) = (next(), next(), next());
+            let shaped = |word: u32, choice: u32| match choice & 7 {
+                0 => word,
+                1 => word & 0xff80_0000,
+                2 => (word & 0xff80_0000).wrapping_sub(1 + (choice >> 8 & 3)),
+                3 => word & 0xff80_0000 | 1 + (choice >> 8 & 3),
+                4 => word & 0xfff0_0000,
+                5 => word & 0x807f_ffff,
+                6 => word & 0x807f_ffff | 0x7f00_0000,
+                _ => word & 0xffff_f000,
+            };
+            let b = match choice >> 16 & 7 {
+                // Near to `a`, so that much is cancelled; or a few binades away, where rounding is decided by few bits.
+                0 => a ^ SIGN ^ (b & 7),
+                1 => (a ^ SIGN) & 0xff80_0000 | b & 0x007f_ffff,
+                2..=4 => (a ^ b & SIGN).wrapping_sub((b >> 3) % 30 << 23),
+                _ => shaped(b, choice >> 3),
+            };
+            [shaped(a, choice), b]
+        })
+    }
+
+    fn equal(own: u32, core: f32, what: &str, [a, b]: [u32; 2]) {
+        let same = if core.is_nan() { f32::from_bits(own).is_nan() } else { own == core.to_bits() };
+        assert!(same, "{a:08x} {what} {b:08x}: {own:08x}, not {:08x}", core.to_bits());
+    }
+
+    #[test]
+    fn sums_and_products_are_those_of_the_fpu() {
+        for pair in words(20_000_000) {
+            let [a, b] = pair;
+            let (x, y) = (f32::from_bits(a), f32::from_bits(b));
+            equal(add(a, b), x + y, "+", pair);
+            equal(rare_add(a, b), x + y, "+ (rare)", pair);
+            equal(mul(a, b), x * y, "*", pair);
+            equal(rare_mul(a, b), x * y, "* (rare)", pair);
+        }
+    }
+
+    #[test]
+    fn every_exponent_meets_every_other() {
+        for high in 0..=255u32 {
+            for low in 0..=255u32 {
+                for [of_a, of_b] in [[0, 0], [0, 1], [1, 0x007f_ffff], [0x007f_ffff; 2], [0x0040_0000, 0x003f_ffff]] {
+                    for signs in [0, SIGN] {
+                        let pair = [high << 23 | of_a, low << 23 | of_b | signs];
+                        let [a, b] = pair;
+                        let (x, y) = (f32::from_bits(a), f32::from_bits(b));
+                        equal(add(a, b), x + y, "+", pair);
+                        equal(mul(a, b), x * y, "*", pair);
+                    }
+                }
+            }
+        }
+    }
+}
