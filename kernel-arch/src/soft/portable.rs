@@ -18,25 +18,32 @@ fn significand(bits: u32) -> u32 {
     bits << 8 | 1 << 31
 }
 
-/// `significand 2^(exponent - 158)`, with the sign in bit 8 of `exponent`: rounded to nearest, ties to even. Rounding up from the
-/// largest number gives infinity, as it must.
+/// The number with this significand, its leading one in bit 31, rounded to 24 bits: to nearest, ties to even. `signed_exponent` is
+/// the stored exponent less one, since the leading one adds one to the field, with the sign in bit 8. Rounding up from the largest
+/// number gives infinity, as it must.
 #[inline(always)]
 fn round(significand: u32, signed_exponent: i32) -> u32 {
-    // The leading one adds one to the exponent's field.
-    let bits = (significand >> 8).wrapping_add((signed_exponent as u32).wrapping_sub(1) << 23);
-    let rest = significand & 0xff;
-    let up = u32::from(rest > 0x80) | u32::from(rest == 0x80) & bits;
-    bits.wrapping_add(up)
+    let kept = significand >> 8;
+    // All ones below the half, and one more where the kept part is odd: a carry where it must be rounded up.
+    let rest = (significand & 0xff) + (kept & 1) + 0x7f;
+    kept.wrapping_add(rest >> 8).wrapping_add((signed_exponent as u32) << 23)
+}
+
+/// The same with the leading one in bit 30: the carry has a place to go.
+#[inline(always)]
+fn round_low(significand: u32, signed_exponent: i32) -> u32 {
+    let odd = significand >> 7 & 1;
+    ((significand + odd + 0x3f) >> 7).wrapping_add((signed_exponent as u32) << 23)
 }
 
 /// `a + b`.
-#[inline]
+#[inline(always)]
 pub fn add(a: u32, b: u32) -> u32 {
     let (a, b) = if a << 1 < b << 1 { (b, a) } else { (a, b) };
     let (high, low) = (exponent(a), exponent(b));
     // Sums of what has exponent 254 may overflow; differences of what has less than 32 may be subnormal.
     if high >= 254 || low == 0 || high < 32 {
-        return rare_add(a, b);
+        return if b << 1 == 0 && high < 255 { add_zero(a, b) } else { rare_add(a, b) };
     }
     let apart = (high - low) as u32;
     if apart > 25 {
@@ -48,43 +55,48 @@ pub fn add(a: u32, b: u32) -> u32 {
     // What is shifted out can only matter where the rest is just half of the last place: one bit stands for all of it.
     let small = moved | u32::from(moved << apart != small);
     let sum = if (a ^ b) & SIGN == 0 { large + small } else { large - small };
-    normalise(sum, high + 1 + (a >> 31 << 8) as i32)
+    normalise(sum, high + (a >> 31 << 8) as i32)
 }
 
-/// Brings the leading one to bit 31, and rounds. No exponent may leave the range of normal numbers.
+/// `a + b` for `b` zero. Two zeros of different signs make a positive one.
+#[inline(always)]
+fn add_zero(a: u32, b: u32) -> u32 {
+    if a << 1 == 0 { a & b } else { a }
+}
+
+/// Rounds a sum whose leading one in bit 31 stands for the stored exponent `exponent + 1`.
 #[inline(always)]
 fn normalise(mut sum: u32, mut exponent: i32) -> u32 {
-    if sum as i32 >= 0 {
-        (sum, exponent) = (sum << 1, exponent - 1);
-        if sum as i32 >= 0 {
-            if sum == 0 {
-                return 0;
-            }
-            // Bit by bit: few are cancelled as a rule, and these cores have no instruction that counts them.
-            while sum as i32 >= 0 {
-                (sum, exponent) = (sum << 1, exponent - 1);
-            }
+    if sum >> 31 != 0 {
+        return round(sum, exponent);
+    }
+    exponent -= 1;
+    if sum >> 30 == 0 {
+        if sum == 0 {
+            return 0;
+        }
+        // Bit by bit: few are cancelled as a rule, and these cores have no instruction that counts them.
+        while sum >> 30 == 0 {
+            (sum, exponent) = (sum << 1, exponent - 1);
         }
     }
-    round(sum, exponent)
+    round_low(sum, exponent)
 }
 
 /// `a * b`.
-#[inline]
+#[inline(always)]
 pub fn mul(a: u32, b: u32) -> u32 {
     let (of_a, of_b) = (exponent(a), exponent(b));
     let sum = of_a + of_b - 127;
     if of_a == 0 || of_b == 0 || of_a == 255 || of_b == 255 || !(1..254).contains(&sum) {
-        return rare_mul(a, b);
+        let zero = a << 1 == 0 || b << 1 == 0;
+        return if zero && of_a < 255 && of_b < 255 { (a ^ b) & SIGN } else { rare_mul(a, b) };
     }
     let product = u64::from(significand(a)) * u64::from(significand(b));
-    // Sixteen bits of the low half are zero: there is a sticky bit in the rest.
-    let mut top = (product >> 32) as u32 | u32::from(product as u32 != 0);
-    let mut exponent = sum + 1 + ((a ^ b) >> 31 << 8) as i32;
-    if top as i32 >= 0 {
-        (top, exponent) = (top << 1 | (product as u32) >> 31, exponent - 1);
-    }
-    round(top, exponent)
+    // One bit stands for the low half: what is rounded by is above it.
+    let top = (product >> 32) as u32 | u32::from(product as u32 != 0);
+    let exponent = sum + ((a ^ b) >> 31 << 8) as i32;
+    if top >> 31 != 0 { round(top, exponent) } else { round_low(top, exponent - 1) }
 }
 
 /// A number that is neither zero nor infinite nor NaN: its significand with the leading one in bit 31, and its exponent, below 1
@@ -99,20 +111,19 @@ fn parts(bits: u32) -> (u32, i32) {
     }
 }
 
-/// `significand 2^(exponent - 158)` of any exponent, with a sticky lowest bit.
+/// The number with this significand, its leading one in bit 31, the lowest bit sticky, and any exponent.
 fn round_any(significand: u32, exponent: i32, sign: u32) -> u32 {
     if exponent >= 255 {
         return sign | INFINITY;
     }
     if exponent >= 1 {
-        return sign | round(significand, exponent);
+        return sign | round(significand, exponent - 1);
     }
     // Subnormal: the leading one has its own place in the field, and rounding may carry into the exponent.
     let shift = (1 - exponent) as u32;
     let (moved, lost) = if shift < 32 { (significand >> shift, significand << (32 - shift)) } else { (0, significand) };
     let moved = moved | u32::from(lost != 0);
-    let (bits, rest) = (moved >> 8, moved & 0xff);
-    sign | (bits + (u32::from(rest > 0x80) | u32::from(rest == 0x80) & bits))
+    sign | round(moved, 0)
 }
 
 /// [`add`] for all numbers.
@@ -127,8 +138,7 @@ pub fn rare_add(a: u32, b: u32) -> u32 {
         return if b == a ^ SIGN { QUIET_NAN } else { a };
     }
     if b << 1 == 0 {
-        // Two zeros of different signs make a positive one.
-        return if a << 1 == 0 { a & b } else { a };
+        return add_zero(a, b);
     }
     let ((large, high), (small, low)) = (parts(a), parts(b));
     // In 64 bits: 32 more below the significands, where at most 25 of them are needed to round right.
