@@ -14,12 +14,20 @@ impl<
 > Pipeline<'_, JOINTS, STATES, UNITS, WINDOW, COUNT, KEYS>
 {
     /// Puts the state where the robot is, see [`Limiter::start`](crate::Limiter::start), and the translator's filters where they
-    /// would be had it always stood there. A pose that is not sound is ignored.
+    /// would be had it always stood there; the emotion gets its strength. A pose that is not sound is ignored.
     pub fn start(&self, state: &mut PipelineState<JOINTS, STATES, WINDOW, KEYS>, pose: &Pose<JOINTS>) {
         state.change_model();
         self.limit.start(&mut state.limit, pose);
+        self.change_strength(state);
         if let (Some(engine), true) = (&self.translate, pose.is_sound(self.limit.joints())) {
             engine.start(&mut state.translate, pose);
+        }
+    }
+
+    /// Brings the emotion to `state.emotion.strength`, so that no frame has to: see [`Emotion::change`](crate::Emotion::change).
+    pub fn change_strength(&self, state: &mut PipelineState<JOINTS, STATES, WINDOW, KEYS>) {
+        if let Some(engine) = &self.emotion {
+            engine.change(&mut state.emotion);
         }
     }
 

@@ -3,6 +3,7 @@
 use kinesic::kernel::{FixedBlock, is_bounded};
 use kinesic::model::Kind;
 use kinesic_host::pack::{PackWriter, Provenance};
+use kinesic_workloads::arithmetic::Arithmetic;
 use kinesic_workloads::modal::{Modal, ModalFixed, Nalgebra, ORDER, SIDES};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
@@ -40,6 +41,13 @@ fn pack() -> Vec<u8> {
 fn input(frames: usize) -> Vec<Vec<f32>> {
     let mut random = ChaCha8Rng::seed_from_u64(SEED + 1);
     (0..frames).map(|_| (0..SIDES).map(|_| random.random_range(-2.0..2.0)).collect()).collect()
+}
+
+/// Numbers that are drawn on the device: a seed a frame, and the pack of the others, since there must be one.
+pub fn arithmetic(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
+    let mut random = ChaCha8Rng::seed_from_u64(SEED + 2);
+    let seeds: Vec<Vec<f32>> = (0..frames).map(|_| vec![random.random_range(0.0..1.0)]).collect();
+    on_host::<Arithmetic>(name, "modal.kin", pack(), &seeds)
 }
 
 pub fn f32(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {

@@ -4,6 +4,7 @@
 //! shows its output. `firmware-sim/image` runs it on the device; `kinesic-firmware-sim` runs it on the host and compares.
 #![no_std]
 
+pub mod arithmetic;
 pub mod components;
 mod digest;
 pub mod emotion;

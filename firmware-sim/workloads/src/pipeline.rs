@@ -1,5 +1,5 @@
-//! Everything that a body can have in a frame: body mechanics with half the expression, a whole-body translator, style components, their
-//! mean, joint limits, through the very `Pipeline` of the product.
+//! Everything that a body can have in a frame: body mechanics with half the expression, a whole-body translator, style components,
+//! a walk at an emotion's strength, their mean, joint limits, through the very `Pipeline` of the product.
 
 use kinesic::{Pack, Pipeline, PipelineState, Pose};
 
@@ -7,12 +7,12 @@ use crate::{Digest, Refused, Workload, pose};
 
 /// Joints, network and window of `models/mechanics.kin`.
 pub use crate::mechanics::{JOINTS, UNITS, WINDOW};
-/// Components.
+/// Components of a style, and of a keyframe.
 pub const COUNT: usize = 30;
 /// Filter states and drives of the translator.
 pub const STATES: usize = 48;
-/// No emotion plays.
-const KEYS: usize = 0;
+/// Keyframes of the emotion.
+pub const KEYS: usize = 13;
 
 /// `Pipeline::step` with all engines.
 #[derive(Clone, Copy, Debug)]
@@ -36,9 +36,11 @@ impl Workload for Whole {
         Pipeline::load(&pack).map_err(|_| Refused)
     }
 
-    fn power_on(_: &Self::Model<'_>) -> Self::State {
+    fn power_on(model: &Self::Model<'_>) -> Self::State {
         let mut state = PipelineState::new();
         state.modulation.amount = 0.5;
+        state.weights.emotion = 1.0;
+        model.change_strength(&mut state);
         Running { state, source: Pose::identity(), out: Pose::identity() }
     }
 

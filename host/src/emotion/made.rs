@@ -36,8 +36,24 @@ pub fn sized(attributes: usize, [keys, components, units]: Size) -> (EmotionMode
     let map = JointMap::detect(&skeleton).unwrap_or_else(|| unreachable!("the gait's joints have known names"));
     let rig = Rig::new(&skeleton, &map).unwrap_or_else(|error| unreachable!("the gait is a rig: {error}"));
     let swaying = Manner { sway: 0.3, arms: 0.9, ..Manner::NEUTRAL };
-    let manners: Vec<Manner> = [Manner::NEUTRAL, Manner::WEARY, swaying].into_iter().take(attributes + 1).collect();
-    let cycles: Vec<Cycle> = manners.iter().map(|manner| Cycle::new(&rig, manner, keys)).collect();
+    let manners = [Manner::NEUTRAL, Manner::WEARY, swaying].into_iter().take(attributes + 1);
+    let moments = manners.map(|manner| {
+        let seconds = 1.0 / manner.cadence;
+        let poses = rig.poses(&walk(&manner, seconds + 0.1, FPS, 0.0, 1));
+        let frame = |key: usize| (seconds * FPS * key as f64 / (keys - 1) as f64).round() as usize;
+        (0..keys).map(|key| (frame(key) as f64 / FPS, poses[frame(key)])).collect()
+    });
+    (over(&rig, &moments.collect::<Vec<Vec<Moment>>>(), [components, units]), rig)
+}
+
+/// A time of a cycle, s, and the pose there.
+pub type Moment = (f64, Pose<MAX_JOINTS>);
+
+/// The same over other motions: the first is neutral, each other one a full strength of its attribute. `moments`: the keyframes
+/// of each, as many of one as of the other.
+pub fn over(rig: &Rig, moments: &[Vec<Moment>], [components, units]: [usize; 2]) -> EmotionModel {
+    let cycles: Vec<Cycle> = moments.iter().map(|moments| Cycle::new(rig, moments)).collect();
+    let (attributes, keys) = (cycles.len() - 1, moments[0].len());
     let features: Vec<&[f64]> = cycles.iter().flat_map(|cycle| cycle.keyframes.iter().map(Vec::as_slice)).collect();
     let width = 6 * rig.joints();
     let mean: Vec<f64> =
@@ -63,7 +79,7 @@ pub fn sized(attributes: usize, [keys, components, units]: Size) -> (EmotionMode
         .collect();
     let rank_bias = rank.chunks_exact(motion).map(|w| -w.iter().zip(&neutral).map(|(w, x)| w * x).sum::<f64>());
     let wave = |at: usize| (at as f64 * 0.7 + 0.3).sin();
-    let model = EmotionModel {
+    EmotionModel {
         motion: "made walk".to_owned(),
         frame_rate: 60.0,
         attributes: [("weary", [0.0, 1.0]), ("swaying", [-1.0, 1.0])]
@@ -89,8 +105,7 @@ pub fn sized(attributes: usize, [keys, components, units]: Size) -> (EmotionMode
         reference: cycles[0].reference.clone(),
         parts: (0..keys).map(|key| key as f64 / (keys - 1) as f64).collect(),
         velocity_scale: 1.0,
-    };
-    (model, rig)
+    }
 }
 
 /// Keyframes of one cycle.
@@ -101,20 +116,16 @@ struct Cycle {
 }
 
 impl Cycle {
-    fn new(rig: &Rig, manner: &Manner, count: usize) -> Self {
-        let seconds = 1.0 / manner.cadence;
-        let poses = rig.poses(&walk(manner, seconds + 0.1, FPS, 0.0, 1));
-        let frame = |key: usize| (seconds * FPS * key as f64 / (count - 1) as f64).round() as usize;
-        let keys: Vec<Pose<MAX_JOINTS>> = (0..count).map(|key| poses[frame(key)]).collect();
-        let positions: Vec<Vec<f64>> = keys.iter().map(|pose| positions(rig, pose)).collect();
-        let keyframes = (0..count).map(|key| {
+    fn new(rig: &Rig, moments: &[Moment]) -> Self {
+        let positions: Vec<Vec<f64>> = moments.iter().map(|(_, pose)| positions(rig, pose)).collect();
+        let keyframes = (0..moments.len()).map(|key| {
             let at = key.max(1);
-            let time = (frame(at) - frame(at - 1)) as f64 / FPS;
+            let time = moments[at].0 - moments[at - 1].0;
             let rates = positions[at].iter().zip(&positions[at - 1]).map(|(to, from)| (to - from) / time);
             positions[key].iter().copied().chain(rates).collect()
         });
         let mut reference: Vec<UnitQuaternion<f32>> = Vec::new();
-        for pose in &keys {
+        for (_, pose) in moments {
             let mut world = World::<MAX_JOINTS>::identity();
             forward(&rig.device(), pose, &mut world);
             let heading = Heading::default().follow(&rig.device(), &world);

@@ -1,4 +1,4 @@
-//! Body mechanics, translator, components, mix and limits, 31 joints.
+//! Body mechanics, translator, components, emotion, mix and limits, 31 joints.
 #![no_std]
 #![no_main]
 

@@ -1,0 +1,5 @@
+//! Sums, differences and products that are hard to round.
+#![no_std]
+#![no_main]
+
+kinesic_image::image!(kinesic_image::workloads::arithmetic::Arithmetic, "modal.kin");
