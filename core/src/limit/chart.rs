@@ -106,7 +106,7 @@ impl Frame {
 fn arc(sin: f32, cos: f32) -> Option<f32> {
     let norm = sqrt(sin * sin + cos * cos);
     if norm > SMALL {
-        let angle = quadrant_angle((sin / norm).abs().min(1.0), (cos / norm).abs().min(1.0));
+        let angle = quadrant_angle(sin.abs(), cos.abs(), norm);
         let angle = if cos < 0.0 { PI - angle } else { angle };
         Some(if sin < 0.0 { -angle } else { angle })
     } else {
@@ -116,7 +116,7 @@ fn arc(sin: f32, cos: f32) -> Option<f32> {
 
 /// The angle that differs from `x` by whole turns and lies nearest to `middle`.
 fn nearest(x: f32, middle: f32) -> f32 {
-    let turns = (x - middle) / TAU;
+    let turns = (x - middle) * (1.0 / TAU);
     let whole = (turns + if turns < 0.0 { -0.5 } else { 0.5 }) as i32;
     x - whole as f32 * TAU
 }

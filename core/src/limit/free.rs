@@ -36,7 +36,7 @@ pub(super) fn log(q: &UnitQuaternion<f32>) -> Vector3<f32> {
     let (w, v) = if q.w < 0.0 { (-q.w, -q.imag()) } else { (q.w, q.imag()) };
     let sin = norm(v);
     // For small angles the ratio is 2.
-    if sin > 1e-4 { v * (2.0 * quadrant_angle(sin.min(1.0), w.min(1.0)) / sin) } else { v * 2.0 }
+    if sin > 1e-4 { v * (2.0 * quadrant_angle(sin, w, 1.0) / sin) } else { v * 2.0 }
 }
 
 /// The turn by `|v|` rad about `v`.

@@ -17,7 +17,7 @@ fn half(q: &UnitQuaternion<f32>) -> (f32, f32, Quaternion<f32>) {
 /// Angle of a rotation, 0..pi rad. Absolute error below 2e-6.
 pub fn angle(q: &UnitQuaternion<f32>) -> f32 {
     let (sin, cos, _) = half(q);
-    2.0 * quadrant_angle(sin, cos)
+    2.0 * quadrant_angle(sin, cos, 1.0)
 }
 
 /// `q^exponent`: the rotation about the same axis by `exponent` times the angle (that of the shorter arc). 0 gives the
@@ -25,7 +25,7 @@ pub fn angle(q: &UnitQuaternion<f32>) -> f32 {
 pub fn power(q: &UnitQuaternion<f32>, exponent: f32) -> UnitQuaternion<f32> {
     let exponent = if exponent.is_nan() { 0.0 } else { exponent.clamp(-LARGEST, LARGEST) };
     let (sin, cos, q) = half(q);
-    let (sin_out, cos_out) = sin_cos(exponent * quadrant_angle(sin, cos));
+    let (sin_out, cos_out) = sin_cos(exponent * quadrant_angle(sin, cos, 1.0));
     // For small angles the ratio of the sines is the exponent.
     let ratio = if sin > 1e-6 { sin_out / sin } else { exponent };
     unit(Quaternion::new(cos_out, q.i * ratio, q.j * ratio, q.k * ratio))
