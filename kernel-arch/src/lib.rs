@@ -11,6 +11,8 @@
 mod arm;
 pub mod portable;
 pub mod soft;
+#[cfg(kinesic_tile = "thumb1")]
+mod thumb1;
 #[cfg(kinesic_root)]
 mod vfp;
 
@@ -44,11 +46,18 @@ pub fn column_tile(weights: &[[f32; 8]], x: &[f32]) -> [f32; 8] {
 pub use vfp::column_tile;
 
 /// Square root, correctly rounded: the same bits on every core, but for the sign of the NaN below zero.
-#[cfg(not(kinesic_root))]
+#[cfg(not(any(kinesic_root, kinesic_narrow_multiply)))]
 #[inline]
 pub fn sqrt(x: f32) -> f32 {
     libm::sqrtf(x)
 }
+
+/// Square root, correctly rounded: `libm`'s needs products of 64 bits.
+#[cfg(all(kinesic_narrow_multiply, not(kinesic_tile)))]
+pub use portable::sqrt;
+
+#[cfg(kinesic_tile = "thumb1")]
+pub use thumb1::sqrt;
 
 #[cfg(kinesic_root)]
 pub use vfp::sqrt;
@@ -68,3 +77,14 @@ pub fn scale16(w: i16, x: i32) -> i32 {
 /// `w * x / 2^16`, rounded down, in two products of 32 bits: the core has no wider ones.
 #[cfg(kinesic_narrow_multiply)]
 pub use portable::scale16;
+
+/// `w * x / 2^32`, rounded to nearest, ties up.
+#[cfg(not(kinesic_narrow_multiply))]
+#[inline(always)]
+pub fn scale32(w: i32, x: i32) -> i32 {
+    ((i64::from(w) * i64::from(x) + (1 << 31)) >> 32) as i32
+}
+
+/// `w * x / 2^32`, rounded to nearest, ties up, in four products of 32 bits.
+#[cfg(kinesic_narrow_multiply)]
+pub use portable::scale32;

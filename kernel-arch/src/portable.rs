@@ -36,6 +36,62 @@ pub fn scale16(w: i16, x: i32) -> i32 {
     (x >> 16) * w + (((x & 0xffff) * w) >> 16)
 }
 
+/// See [`crate::scale32`], from four products of 32 bits.
+#[inline(always)]
+pub fn scale32(w: i32, x: i32) -> i32 {
+    let ([low_w, high_w], [low_x, high_x]) = ([w & 0xffff, w >> 16], [x & 0xffff, x >> 16]);
+    let low = (low_w as u32 * low_x as u32) >> 16;
+    // At most 2^31 - 2^16 in size: there is room for the low product's upper half.
+    let first = low_w * high_x + low as i32;
+    let second = high_w * low_x;
+    let carry = ((first & 0xffff) + (second & 0xffff) + 0x8000) >> 16;
+    (high_w * high_x).wrapping_add((first >> 16) + (second >> 16) + carry)
+}
+
+/// See [`crate::sqrt`]: a bit of the root at a time, in words of 32 bits.
+pub fn sqrt(x: f32) -> f32 {
+    sqrt_by(x, root)
+}
+
+/// The root of `rest`, its leading one in bit 24 or 25, to 25 bits.
+fn root(mut rest: u32) -> u32 {
+    let (mut twice, mut bit) = (0, 1 << 24);
+    while bit != 0 {
+        let next = twice + bit;
+        if next <= rest {
+            (twice, rest) = (next + bit, rest - next);
+        }
+        (rest, bit) = (rest << 1, bit >> 1);
+    }
+    twice >> 1
+}
+
+/// [`sqrt`] with another loop.
+#[inline(always)]
+pub(crate) fn sqrt_by(x: f32, root: impl Fn(u32) -> u32) -> f32 {
+    const INFINITY: u32 = 0xff << 23;
+    let bits = x.to_bits();
+    if bits << 1 == 0 || bits == INFINITY {
+        return x;
+    }
+    if bits > INFINITY {
+        return f32::NAN;
+    }
+    let (mut exponent, mut rest) = match bits >> 23 {
+        0 => {
+            let zeros = (bits << 9).leading_zeros();
+            (-(zeros as i32), bits << (zeros + 1))
+        }
+        exponent => (exponent as i32, bits & 0x007f_ffff | 1 << 23),
+    };
+    // An even power of two is left over.
+    exponent -= 127;
+    rest <<= 1 + (exponent & 1);
+    // 24 bits and one to round by: no root lies half way between two numbers.
+    let root = root(rest);
+    f32::from_bits(((root + (root & 1)) >> 1).wrapping_add(((exponent >> 1) + 126) as u32 * (1 << 23)))
+}
+
 #[inline(always)]
 fn row(word: u32, [x0, x1, x2, x3]: [i32; 4], sum: i32) -> i32 {
     let [c0, c2, c1, c3] = word.to_le_bytes().map(|byte| i32::from(byte as i8));
@@ -45,6 +101,7 @@ fn row(word: u32, [x0, x1, x2, x3]: [i32; 4], sum: i32) -> i32 {
 
 #[cfg(test)]
 mod tests {
+    extern crate std;
     use super::*;
     use crate::pack_weights;
 
@@ -92,6 +149,31 @@ mod tests {
                 assert_eq!(i64::from(scale16(w, x)), exact, "{w} {x}");
                 assert_eq!(i64::from(crate::scale16(w, x)), exact, "{w} {x}");
             }
+        }
+        let mut seed = 1u32;
+        for step in 0..1_000_000 {
+            let mut next = || {
+                seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                (seed ^ seed >> 15) as i32
+            };
+            let value = |drawn: i32| values[drawn as usize % values.len()];
+            let (w, x) = if step % 3 == 0 { (value(next()), value(next())) } else { (next(), next()) };
+            let exact = (i64::from(w) * i64::from(x) + (1 << 31)).div_euclid(1 << 32);
+            assert_eq!(i64::from(scale32(w, x)), exact, "{w} {x}");
+            assert_eq!(i64::from(crate::scale32(w, x)), exact, "{w} {x}");
+        }
+    }
+
+    #[test]
+    fn roots_are_those_of_the_fpu() {
+        let near = |bits: u32| (0..200_000).map(move |step| bits.wrapping_add(step).wrapping_sub(100_000));
+        let all = (0..u32::MAX)
+            .step_by(1_009)
+            .chain([0, 1 << 23, 127 << 23, 128 << 23, 0xff << 23].into_iter().flat_map(near));
+        for bits in all {
+            let x = f32::from_bits(bits);
+            let (own, exact) = (sqrt(x), x.sqrt());
+            assert!(own.to_bits() == exact.to_bits() || own.is_nan() && exact.is_nan(), "{x}: {own}, not {exact}");
         }
     }
 

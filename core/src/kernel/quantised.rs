@@ -4,7 +4,7 @@
 
 use core::num::NonZeroUsize;
 
-use kinesic_kernel_arch::{Inputs, Weights, tile};
+use kinesic_kernel_arch::{Inputs, Weights, scale32, tile};
 
 use crate::model::{LoadError, Pack};
 
@@ -102,7 +102,7 @@ impl<'a> Quantised<'a> {
             let (mut sums, mut out) = ([0; TILE], [0; TILE]);
             tile(tiles, groups(x), &mut sums);
             for (((out, sum), multiplier), bias) in out.iter_mut().zip(sums).zip(multipliers).zip(bias) {
-                *out = scale(sum, *multiplier).wrapping_add(*bias);
+                *out = scale32(sum, *multiplier).wrapping_add(*bias);
             }
             out
         })
@@ -123,11 +123,6 @@ impl<'a> Quantised<'a> {
     pub fn apply_tanh(&self, x: &[i16], out: &mut [i16]) {
         self.apply(x, out, tanh_fixed);
     }
-}
-
-/// `sum * multiplier / 2^32`, rounded to nearest, ties up.
-fn scale(sum: i32, multiplier: i32) -> i32 {
-    ((i64::from(sum) * i64::from(multiplier) + (1 << 31)) >> 32) as i32
 }
 
 /// Fraction bits that a step of the table spans: 1/32.

@@ -1,11 +1,11 @@
-//! Sums, differences and products that are hard to round: what the functions of `kernel-arch`'s `soft` must get right.
+//! Sums, differences, products and quotients that are hard to round: what the functions of `kernel-arch`'s `soft` must get right.
 
 use crate::{Digest, Refused, Workload};
 
 /// Pairs of numbers a frame.
 pub const PAIRS: u32 = 256;
 
-/// Three operations a pair.
+/// Four operations a pair.
 #[derive(Clone, Copy, Debug)]
 pub struct Arithmetic;
 
@@ -81,6 +81,7 @@ impl Workload for Arithmetic {
             drawn.add(a + b);
             drawn.add(a - b);
             drawn.add(a * b);
+            drawn.add(a / b);
         }
     }
 

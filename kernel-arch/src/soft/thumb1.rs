@@ -1,12 +1,16 @@
-//! Sums and products in assembly for ARMv6-M, under the names of the run-time ABI for the Arm architecture. The steps are those of
+//! Sums, products and quotients in assembly for ARMv6-M, under the names of the run-time ABI for the Arm architecture. The steps are those of
 //! [`portable`](super::portable); what is rare goes there, and so do all checks that the fast way would not survive.
 
 use core::arch::global_asm;
 
-use super::portable::{rare_add, rare_mul};
+use super::portable::{div, rare_add, rare_mul};
 
 extern "C" fn add(a: u32, b: u32) -> u32 {
     rare_add(a, b)
+}
+
+extern "C" fn rare_div(a: u32, b: u32) -> u32 {
+    div(a, b)
 }
 
 extern "C" fn mul(a: u32, b: u32) -> u32 {
@@ -74,7 +78,7 @@ macro_rules! align {
     };
 }
 
-// Cortex-M0+: a sum 51 to 58 cycles, a product 57, call and return included, where nothing is rare.
+// Cortex-M0+: a sum 51 to 58 cycles, a product 57, a quotient 165, call and return included, where nothing is rare.
 global_asm!(
     ".syntax unified",
     ".section .text.kinesic_soft_float,\"ax\",%progbits",
@@ -233,7 +237,68 @@ global_asm!(
     "10:",
     ".word {mul}",
     ".size __aeabi_fmul, . - __aeabi_fmul",
+    // In front: the end is too far away for a conditional branch.
+    "9:",
+    "ldr r2, 10f",
+    "bx r2",
+    ".p2align 2",
+    "10:",
+    ".word {div}",
+    ".global __aeabi_fdiv",
+    ".type __aeabi_fdiv,%function",
+    ".thumb_func",
+    "__aeabi_fdiv:",
+    "lsls r2, r0, #1",
+    "lsrs r2, r2, #24",
+    "beq 9b",
+    "lsls r3, r1, #1",
+    "lsrs r3, r3, #24",
+    "beq 9b",
+    "cmp r2, #255",
+    "beq 9b",
+    "cmp r3, #255",
+    "beq 9b",
+    // The stored exponent less one.
+    "subs r2, r2, r3",
+    "adds r2, #126",
+    "subs r3, r2, #1",
+    "cmp r3, #251",
+    "bhi 9b",
+    "movs r3, r0",
+    "eors r3, r1",
+    "lsrs r3, r3, #31",
+    "lsls r3, r3, #8",
+    "adds r2, r2, r3",
+    "movs r3, #1",
+    "lsls r3, r3, #23",
+    "lsls r0, r0, #9",
+    "lsrs r0, r0, #9",
+    "orrs r0, r3",
+    "lsls r1, r1, #9",
+    "lsrs r1, r1, #9",
+    "orrs r1, r3",
+    "cmp r0, r1",
+    "bhs 1f",
+    "lsls r0, r0, #1",
+    "subs r2, #1",
+    "1:",
+    "movs r3, #0",
+    // 24 bits that are kept and one to round by. No quotient of two such numbers lies half way between two others.
+    ".rept 25",
+    "cmp r0, r1",
+    "blo 1f",
+    "subs r0, r0, r1",
+    "1:",
+    "adcs r3, r3",
+    "lsls r0, r0, #1",
+    ".endr",
+    "lsls r2, r2, #23",
+    "lsrs r0, r3, #1",
+    "adcs r0, r2",
+    "bx lr",
+    ".size __aeabi_fdiv, . - __aeabi_fdiv",
     ".text",
     add = sym add,
     mul = sym mul,
+    div = sym rare_div,
 );

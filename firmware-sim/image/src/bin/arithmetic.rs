@@ -1,4 +1,4 @@
-//! Sums, differences and products that are hard to round.
+//! Sums, differences, products and quotients that are hard to round.
 #![no_std]
 #![no_main]
 
