@@ -99,10 +99,17 @@ impl<'a> Quantised<'a> {
     pub fn tiles<'x>(&self, x: &'x [i16]) -> impl Iterator<Item = [i32; TILE]> + use<'a, 'x> {
         let rows = self.multipliers.chunks(TILE).zip(self.bias.chunks(TILE));
         self.tiles.chunks_exact(self.groups.get()).zip(rows).map(move |(tiles, (multipliers, bias))| {
-            let (mut sums, mut out) = ([0; TILE], [0; TILE]);
+            let mut sums = [0; TILE];
             tile(tiles, groups(x), &mut sums);
+            let row = |sum, multiplier: i32, bias: i32| scale32(sum, multiplier).wrapping_add(bias);
+            // Whole tiles without a check a row.
+            if let (&[m0, m1, m2, m3], &[b0, b1, b2, b3]) = (multipliers, bias) {
+                let [s0, s1, s2, s3] = sums;
+                return [row(s0, m0, b0), row(s1, m1, b1), row(s2, m2, b2), row(s3, m3, b3)];
+            }
+            let mut out = [0; TILE];
             for (((out, sum), multiplier), bias) in out.iter_mut().zip(sums).zip(multipliers).zip(bias) {
-                *out = scale32(sum, *multiplier).wrapping_add(*bias);
+                *out = row(sum, *multiplier, *bias);
             }
             out
         })
@@ -113,6 +120,10 @@ impl<'a> Quantised<'a> {
     pub fn apply<T>(&self, x: &[i16], out: &mut [T], each: impl Fn(i32) -> T) {
         let Some(out) = out.get_mut(..self.rows()) else { return };
         for (rows, out) in self.tiles(x).zip(out.chunks_mut(TILE)) {
+            if let Ok(out) = <&mut [T; TILE]>::try_from(&mut *out) {
+                *out = rows.map(&each);
+                continue;
+            }
             for (row, out) in rows.into_iter().zip(out) {
                 *out = each(row);
             }
