@@ -16,8 +16,8 @@ use kinesic_host::face::{HostFace, made};
 use kinesic_host::limit::HostLimiter;
 use kinesic_host::mechanics::HostMechanics;
 use kinesic_host::pack::{PackFile, Provenance};
-use kinesic_host::quantise::to_int8;
-use kinesic_host::translate::FormChoice;
+use kinesic_host::quantise::{to_int8, to_int16};
+use kinesic_host::translate::{FormChoice, HostTranslator};
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
 
@@ -32,7 +32,9 @@ const GOLDEN: [(&str, FormChoice, usize); 2] =
 type Make = fn() -> Vec<u8>;
 
 /// The other kinds: small packs of drawn numbers.
-const MADE: [(&str, Make); 6] = [
+const MADE: [(&str, Make); 8] = [
+    ("translator-whole-body-i16.kin", whole_body_int16),
+    ("translator-per-joint-i16.kin", per_joint_int16),
     ("mechanics.kin", engines::mechanics),
     ("mechanics-i8.kin", int8),
     ("components.kin", engines::components),
@@ -43,6 +45,18 @@ const MADE: [(&str, Make); 6] = [
 
 fn int8() -> Vec<u8> {
     to_int8(&PackFile::from_bytes(&engines::mechanics()), &Provenance::default()).unwrap()
+}
+
+fn int16(form: FormChoice, order: usize) -> Vec<u8> {
+    to_int16(&common::pack(form, order), &Provenance::default()).unwrap()
+}
+
+fn whole_body_int16() -> Vec<u8> {
+    int16(FormChoice::WholeBody, 24)
+}
+
+fn per_joint_int16() -> Vec<u8> {
+    int16(FormChoice::PerJoint, 12)
 }
 
 fn face() -> Vec<u8> {
@@ -99,6 +113,7 @@ fn golden_packs_of_every_kind_load() {
         let file = golden(name);
         let pack = file.pack().unwrap();
         let loads = match pack.kind() {
+            Kind::Translator => HostTranslator::load(&pack).map(drop),
             Kind::Mechanics => HostMechanics::load(&pack).map(drop),
             Kind::Components => HostComponents::load(&pack).map(drop),
             Kind::Emotion => HostEmotion::load(&pack).map(drop),
