@@ -1,7 +1,5 @@
 // The page: what is shown, time, and what a test reads back (`kinesic.state()`).
 
-const SLOT = 1.3; // metres between figures
-
 const kinesic = {
   data: JSON.parse($("data").textContent),
   cores: [], controls: [], emotions: [], figures: [], results: [],
@@ -62,6 +60,7 @@ function show() {
     return { ...figure, index: k, shift: [(k - (figures.length - 1) / 2) * SLOT - x, -z] };
   });
   kinesic.figures = placed;
+  kinesic.scene.stand(placed.length);
   const { rate } = figures[0].track;
   kinesic.frames = Math.round(duration * rate) + 1;
   kinesic.duration = Math.max(1e-3, (kinesic.frames - 1) / rate);

@@ -125,7 +125,7 @@ class Emotion {
   panel() {
     const { pack, index, controls } = this;
     const set = element("fieldset", {}, element("legend", { textContent: pack.name }));
-    set.append(element("p", { className: "soft small", textContent: `emotion strength of ${pack.motion}${pack.seconds === null ? ", a cycle" : ""}; ` +
+    set.append(element("p", { className: "soft small", textContent: `emotion strength, motion ${pack.motion}${pack.seconds === null ? ", a cycle" : ""}; ` +
       `${pack.joints.length} joints, ${pack.rate} frames a second, ${pack.size} bytes` }));
     // The only figures of a page stay.
     if (kinesic.data.packs.length + kinesic.data.emotions.length > 1) {
@@ -144,7 +144,8 @@ class Emotion {
     }));
     set.append(...sliders, element("div", { className: "buttons" }, back), element("p", { className: "soft small", textContent:
       "Strengths are in units of the ranking that the pack was trained with. While it plays, a change goes on from where the motion is, " +
-      "as on the device; paused, or before the last change, the motion is made again. While the picture follows, figures are carried along side by side, however fast they walk." }));
+      "as on the device. Paused, the motion is made again from its first frame, and so it is where you go back to before the last change. " +
+      "While the picture follows, figures are carried along side by side, however fast they walk." }));
     return set;
   }
 }
