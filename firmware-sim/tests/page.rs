@@ -192,7 +192,9 @@ fn every_control_changes_what_it_says() {
     set(&mut at, "clip", "0", "change");
     set(&mut at, "time", "120", "input");
     at.value("document.querySelectorAll('details').forEach((d) => (d.open = true))").unwrap();
-    for (button, lowest, highest) in [("none-0", 0.0, 1e-3), ("legs-0", 0.001, 2.0), ("all-0", 0.05, 2.0)] {
+    for (button, lowest, highest) in
+        [("none-0", 0.0, 1e-3), ("legs-0", 0.001, 2.0), ("upper-0", 0.05, 2.0), ("all-0", 0.05, 2.0)]
+    {
         at.click(button).unwrap();
         settle(&mut at);
         let now = state(&mut at);
@@ -232,6 +234,9 @@ fn every_control_changes_what_it_says() {
     at.key("ArrowLeft").unwrap();
     assert_ne!(state(&mut at)["camera"]["yaw"], yaw);
     at.key("0").unwrap();
+    assert_eq!(state(&mut at)["camera"], first["camera"]);
+    at.key("ArrowLeft").unwrap();
+    at.click("view").unwrap();
     assert_eq!(state(&mut at)["camera"], first["camera"]);
     at.click("follow").unwrap();
     let target = state(&mut at)["target"].clone();
