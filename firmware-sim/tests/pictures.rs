@@ -141,9 +141,9 @@ fn emotions() {
     let file = PackFile::from_bytes(&model.pack(&rig, &Provenance::default()));
     let emotions = vec![ViewPack { name: "moods".to_owned(), file }];
     let shown = View { emotions, ..View::default() };
-    let script = "play(false); for (const [slider, strength] of [['emotion-0-0', 0.2], ['emotion-0-1', 1]]) { const e = \
-        document.getElementById(slider); e.value = strength; e.dispatchEvent(new Event('input')); } seek(2.3)";
-    screenshot("emotion.png", &shown, script, [1000, 640]);
+    let script = "play(false); const moved = document.getElementById('emotion-0-1'); moved.value = 1; \
+        moved.dispatchEvent(new Event('input')); seek(0.78)";
+    screenshot("emotion.png", &shown, script, [1000, 600]);
 }
 
 #[test]

@@ -67,7 +67,7 @@ fn answer(memory: &mut Memory, loaded: Result<(), LoadError>) -> usize {
     memory.message.clear();
     if let Err(error) = loaded {
         // Writing to a message cannot fail: what is too long is cut.
-        drop(write!(memory.message, "{error}").is_ok());
+        let _ = write!(memory.message, "{error}");
     }
     memory.message.text().len()
 }

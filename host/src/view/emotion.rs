@@ -126,6 +126,7 @@ mod tests {
     use crate::emotion::{EmotionModel, made};
     use crate::models;
     use crate::pack::{PackFile, Provenance};
+    use crate::view::{View, WASM, page};
 
     fn of(model: &EmotionModel, rig: &Rig) -> ViewPack {
         let file = PackFile::from_bytes(&model.pack(rig, &Provenance::default()));
@@ -156,6 +157,15 @@ mod tests {
         assert_eq!(data.seconds, Some(brisk.max(middle).max(weary) + STANDS));
         assert_eq!(data.change.frame, (middle * 60.0) as usize / 2);
         assert_ne!(data.digests[0], data.digests[1]);
+    }
+
+    #[test]
+    fn an_emotion_pack_is_a_page_without_a_clip() {
+        let (model, rig) = made::model(1);
+        let shown = View { emotions: vec![of(&model, &rig)], ..View::default() };
+        let html = page("title", "made", &shown, WASM).unwrap();
+        assert!(html.contains(r#""emotions":[{"name":"made""#) && html.contains(r#""clips":[]"#));
+        assert!(matches!(page("title", "made", &View::default(), WASM), Err(ViewError::Empty)));
     }
 
     #[test]
