@@ -17,7 +17,7 @@ use super::inspect::is_pack;
 use super::output::{check_output, command_line, print_json, spinner, write_whole};
 use super::pictures::{Photographed, photographed};
 
-/// Make a page on which packs play clips and change faces, live: one HTML file that opens from disk
+/// Make a page on which packs play clips, emotions and faces, live: one HTML file that opens from disk
 ///
 /// The page runs the device's own code, compiled to WebAssembly, frame by frame: skeletons side by side, time, strength or
 /// expressiveness, joints, plots, foot contacts. Without packs it shows the two that come with the program; without clips, a
