@@ -1,8 +1,7 @@
-//! The page of `kinesic view` as a person meets it, in headless Chromium.
-//!
-//! `KINESIC_SHOTS=FOLDER` keeps the pictures that are taken on the way.
+//! The page of `kinesic view` as a person meets it, in headless Chromium. Emotions: `page_emotion.rs`.
 
 mod drawn;
+mod visit;
 
 use std::path::{Path, PathBuf};
 
@@ -19,6 +18,7 @@ use kinesic_host::pack::PackFile;
 use kinesic_host::prepare::{Source, fingerprint};
 use kinesic_host::view::{self, View, ViewClip, ViewFace, ViewPack};
 use serde_json::Value;
+use visit::{apart, dark, fits, pose, set, settle, shot, state, well};
 
 /// The core of the page, built again. `KINESIC_WASM=write` keeps it: `./ci.sh wasm`.
 fn rebuilt() -> (Vec<u8>, String) {
@@ -48,40 +48,6 @@ fn page(folder: &Path, wasm: &[u8]) -> PathBuf {
     let path = folder.join("page.html");
     std::fs::write(&path, html).unwrap();
     path
-}
-
-fn shot(browser: &mut Browser, name: &str) {
-    let picture = browser.screenshot().unwrap();
-    assert!(picture.len() > 10_000);
-    if let Some(folder) = std::env::var_os("KINESIC_SHOTS") {
-        std::fs::write(PathBuf::from(folder).join(name), picture).unwrap();
-    }
-}
-
-fn state(browser: &mut Browser) -> Value {
-    browser.value("kinesic.state()").unwrap()
-}
-
-/// Sets a slider or a list as a person does, and waits until the results are made again.
-fn set(browser: &mut Browser, id: &str, value: &str, event: &str) {
-    let script = format!(
-        "(() => {{ const e = document.getElementById({id:?}); e.value = {value:?}; e.dispatchEvent(new Event({event:?}, {{bubbles: true}})); }})()"
-    );
-    browser.value(&script).unwrap();
-    settle(browser);
-}
-
-fn settle(browser: &mut Browser) {
-    browser.wait("kinesic.results.every((r) => !r || r.done === r.frames && !r.changed)").unwrap();
-}
-
-fn pose(state: &Value, figure: usize) -> Vec<f64> {
-    state["figures"][figure]["pose"].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
-}
-
-/// Largest difference of a number of two poses.
-fn apart(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
 #[test]
@@ -226,7 +192,9 @@ fn every_control_changes_what_it_says() {
     set(&mut at, "clip", "0", "change");
     set(&mut at, "time", "120", "input");
     at.value("document.querySelectorAll('details').forEach((d) => (d.open = true))").unwrap();
-    for (button, lowest, highest) in [("none-0", 0.0, 1e-3), ("legs-0", 0.001, 2.0), ("all-0", 0.05, 2.0)] {
+    for (button, lowest, highest) in
+        [("none-0", 0.0, 1e-3), ("legs-0", 0.001, 2.0), ("upper-0", 0.05, 2.0), ("all-0", 0.05, 2.0)]
+    {
         at.click(button).unwrap();
         settle(&mut at);
         let now = state(&mut at);
@@ -267,16 +235,16 @@ fn every_control_changes_what_it_says() {
     assert_ne!(state(&mut at)["camera"]["yaw"], yaw);
     at.key("0").unwrap();
     assert_eq!(state(&mut at)["camera"], first["camera"]);
+    at.key("ArrowLeft").unwrap();
+    at.click("view").unwrap();
+    assert_eq!(state(&mut at)["camera"], first["camera"]);
     at.click("follow").unwrap();
     let target = state(&mut at)["target"].clone();
     set(&mut at, "time", "300", "input");
     let drawn = state(&mut at)["drawn"].clone();
     at.wait(&format!("kinesic.drawn > {drawn}")).unwrap();
     assert_eq!(state(&mut at)["target"], target);
-    // Everything that can be turned has a name.
-    let nameless = at.value("[...document.querySelectorAll('button, input, select, canvas')].filter((e) => !(e.getAttribute('aria-label') || e.labels?.length || e.textContent.trim())).map((e) => e.id)").unwrap();
-    assert_eq!(nameless.as_array().unwrap().len(), 0, "{nameless}");
-    assert!(at.errors.is_empty() && state(&mut at)["errors"] == serde_json::json!([]), "{:?}", at.errors);
+    well(&mut at);
 }
 
 fn face_page(folder: &Path, (file, faces): &(PackFile, [ViewFace; 2])) -> PathBuf {
@@ -390,16 +358,13 @@ fn a_face_fits_a_phone() {
     let folder = tempfile::tempdir().unwrap();
     let path = face_page(folder.path(), &drawn::faces());
     let mut at = Browser::open(&path, [390, 844], true).unwrap();
-    let dark = serde_json::json!({"features": [{"name": "prefers-color-scheme", "value": "dark"}]});
-    at.call("Emulation.setEmulatedMedia", dark).unwrap();
+    dark(&mut at);
     at.wait("typeof kinesic === 'object' && kinesic.compared").unwrap();
     turn(&mut at, 0.5);
     shot(&mut at, "face-phone.png");
     at.value("document.querySelector('.faces .controls').scrollIntoView()").unwrap();
     shot(&mut at, "face-phone-controls.png");
-    let [wide, window] =
-        ["document.documentElement.scrollWidth", "innerWidth"].map(|e| at.value(e).unwrap().as_f64().unwrap());
-    assert!(wide <= window, "the page is {wide} wide in a window of {window}");
+    fits(&mut at);
     assert!(at.errors.is_empty(), "{:?}", at.errors);
 }
 
@@ -409,13 +374,10 @@ fn it_fits_a_phone_dark_and_touched() {
     let folder = tempfile::tempdir().unwrap();
     let path = page(folder.path(), view::WASM);
     let mut at = Browser::open(&path, [390, 844], true).unwrap();
-    let dark = serde_json::json!({"features": [{"name": "prefers-color-scheme", "value": "dark"}]});
-    at.call("Emulation.setEmulatedMedia", dark).unwrap();
+    dark(&mut at);
     at.wait("typeof kinesic === 'object' && kinesic.compared && kinesic.drawn > 60").unwrap();
     shot(&mut at, "phone.png");
-    let [wide, window] =
-        ["document.documentElement.scrollWidth", "innerWidth"].map(|e| at.value(e).unwrap().as_f64().unwrap());
-    assert!(wide <= window, "the page is {wide} wide in a window of {window}");
+    fits(&mut at);
     let before = state(&mut at)["camera"].clone();
     let [x, y] = at.point("scene", [0.5, 0.5]).unwrap();
     at.touch("touchStart", &[[x - 40.0, y], [x + 40.0, y]]).unwrap();

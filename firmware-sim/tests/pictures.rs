@@ -8,8 +8,10 @@ use std::path::Path;
 
 use kinesic_firmware_sim::browser::Browser;
 use kinesic_host::clip::{Clip, JointMap};
+use kinesic_host::emotion;
 use kinesic_host::gait::{Manner, walk};
 use kinesic_host::models;
+use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_host::prepare::Source;
 use kinesic_host::report::{figures, latency};
 use kinesic_host::rig::Rig;
@@ -130,6 +132,18 @@ fn the_live_page() {
     let packs = packs.map(|(name, file)| ViewPack { name: name.to_owned(), file }).to_vec();
     let shown = View { packs, clips: vec![clip], ..View::default() };
     screenshot("page.png", &shown, "document.getElementById('play').click(); seek(2.1)", [1200, 860]);
+}
+
+#[test]
+#[ignore = "needs chromium: firmware-sim/setup.sh"]
+fn emotions() {
+    let (model, rig) = emotion::made::model(2);
+    let file = PackFile::from_bytes(&model.pack(&rig, &Provenance::default()));
+    let emotions = vec![ViewPack { name: "moods".to_owned(), file }];
+    let shown = View { emotions, ..View::default() };
+    let script = "play(false); const moved = document.getElementById('emotion-0-1'); moved.value = 1; \
+        moved.dispatchEvent(new Event('input')); seek(0.78)";
+    screenshot("emotion.png", &shown, script, [1000, 600]);
 }
 
 #[test]

@@ -75,6 +75,8 @@ fn folder() -> tempfile::TempDir {
     }
     std::fs::remove_dir_all(folder.path().join("made")).unwrap();
     face(folder.path());
+    let (emotion, rig) = kinesic_host::emotion::made::model(2);
+    std::fs::write(folder.path().join("moods.kin"), emotion.pack(&rig, &Provenance::default())).unwrap();
     std::os::unix::fs::symlink(repository().join("models").canonicalize().unwrap(), folder.path().join("models"))
         .unwrap();
     folder

@@ -5,12 +5,14 @@
 //! unit quaternion `x y z w`. The capacities are those of `kinesic-host`, so that everything it plays plays here, with the same bits.
 #![no_std]
 
+mod emotion;
 mod engine;
 mod face;
 mod memory;
 
 use core::fmt::Write;
 
+use emotion::Player;
 use engine::Engine;
 use kinesic::face::FaceSynth;
 use kinesic::pose::{World, forward};
@@ -47,12 +49,25 @@ pub unsafe extern "C" fn load_face(pack: *const u8, len: usize) -> usize {
     answer(memory, loaded)
 }
 
+/// Takes the emotion pack at an address, as [`load`] does the others.
+///
+/// # Safety
+/// As for [`load`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn load_emotion(pack: *const u8, len: usize) -> usize {
+    // SAFETY: by the caller's promise.
+    let bytes: &'static [u8] = unsafe { core::slice::from_raw_parts(pack, len) };
+    let memory = memory();
+    let loaded = Pack::load(bytes).and_then(|pack| Player::load(&pack)).map(|player| memory.emotion.put(player));
+    answer(memory, loaded)
+}
+
 /// Length of the message that says why there was no load, 0 if there was one.
 fn answer(memory: &mut Memory, loaded: Result<(), LoadError>) -> usize {
     memory.message.clear();
     if let Err(error) = loaded {
         // Writing to a message cannot fail: what is too long is cut.
-        drop(write!(memory.message, "{error}").is_ok());
+        let _ = write!(memory.message, "{error}");
     }
     memory.message.text().len()
 }
@@ -75,7 +90,7 @@ pub extern "C" fn other() -> *mut f32 {
     memory().other.as_mut_ptr()
 }
 
-/// Address of the pose that [`step`] and [`mix`] write.
+/// Address of the pose that [`step`], [`mix`] and [`step_emotion`] write.
 #[unsafe(no_mangle)]
 pub extern "C" fn output() -> *mut f32 {
     memory().output.as_mut_ptr()
@@ -93,11 +108,15 @@ pub extern "C" fn positions() -> *const f32 {
     memory().positions.as_ptr().cast()
 }
 
-/// Forgets the past: the next [`step`] is the first of a stream.
+/// Forgets the past: the next [`step`] or [`step_emotion`] is the first of a stream.
 #[unsafe(no_mangle)]
 pub extern "C" fn reset() {
-    if let Some(engine) = memory().engine.get() {
+    let memory = memory();
+    if let Some(engine) = memory.engine.get() {
         engine.reset();
+    }
+    if let Some(player) = memory.emotion.get() {
+        player.reset();
     }
 }
 
@@ -124,11 +143,51 @@ pub extern "C" fn mix(amount: f32) {
 #[unsafe(no_mangle)]
 pub extern "C" fn place(which: u32) {
     let memory = memory();
-    if let Some(engine) = memory.engine.get() {
+    let engine = memory.engine.get().map(|engine| *engine.skeleton());
+    if let Some(skeleton) = engine.or_else(|| memory.emotion.get().map(|player| *player.skeleton())) {
         let pose = if which == 0 { memory.input.pose() } else { memory.output.pose() };
         let mut world = World::identity();
-        forward(engine.skeleton(), &pose, &mut world);
+        forward(&skeleton, &pose, &mut world);
         memory.positions = world.positions.map(Into::into);
+    }
+}
+
+/// Address of the strengths that [`step_emotion`] reads, `[4]`, in the order of the pack's attributes.
+#[unsafe(no_mangle)]
+pub extern "C" fn strengths() -> *mut f32 {
+    memory().strengths.as_mut_ptr()
+}
+
+/// Address of the strengths that the last [`step_emotion`] played, `[4]`: those asked for, held inside the pack's ranges.
+#[unsafe(no_mangle)]
+pub extern "C" fn playing() -> *const f32 {
+    memory().playing.as_ptr()
+}
+
+/// One frame of an emotion pack at [`strengths`] to [`output`]; then `dt` seconds pass. Strengths may change from frame to frame.
+#[unsafe(no_mangle)]
+pub extern "C" fn step_emotion(dt: f32) {
+    let memory = memory();
+    if let Some(player) = memory.emotion.get() {
+        let (pose, playing) = player.step(&memory.strengths, dt);
+        pose.write(&mut memory.output);
+        memory.playing = playing;
+    }
+}
+
+/// Remembers where an emotion pack's motion is.
+#[unsafe(no_mangle)]
+pub extern "C" fn keep() {
+    if let Some(player) = memory().emotion.get() {
+        player.keep();
+    }
+}
+
+/// Goes back to where the motion was at [`keep`].
+#[unsafe(no_mangle)]
+pub extern "C" fn back() {
+    if let Some(player) = memory().emotion.get() {
+        player.back();
     }
 }
 

@@ -6,9 +6,11 @@ use core::mem::MaybeUninit;
 
 use kinesic::Pose;
 use kinesic::face::{Landmarks, POINTS};
+use kinesic::model::ATTRIBUTES;
 use kinesic::nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use crate::JOINTS;
+use crate::emotion::{Player, Strengths};
 use crate::engine::{Engine, HostPose};
 use crate::face::HostFace;
 
@@ -21,7 +23,10 @@ pub type PoseFloats = [f32; LEN];
 /// Everything that an instance has.
 pub struct Memory {
     pub engine: Slot<Engine>,
+    pub emotion: Slot<Player>,
     pub face: Slot<HostFace>,
+    pub strengths: Strengths,
+    pub playing: Strengths,
     pub landmarks: Landmarks,
     pub changed: Landmarks,
     pub reading: [f32; 4],
@@ -41,7 +46,10 @@ unsafe impl Sync for Cell {}
 // All zero, so that it costs nothing in the file.
 static MEMORY: Cell = Cell(UnsafeCell::new(Memory {
     engine: Slot::empty(),
+    emotion: Slot::empty(),
     face: Slot::empty(),
+    strengths: [0.0; ATTRIBUTES],
+    playing: [0.0; ATTRIBUTES],
     landmarks: [[0.0; 2]; POINTS],
     changed: [[0.0; 2]; POINTS],
     reading: [0.0; 4],

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use kinesic::model::ModelMeta;
 use kinesic_host::clip::JointMap;
 use kinesic_host::gait::{Manner, walk};
 use kinesic_host::models;
@@ -16,18 +17,19 @@ use super::inspect::is_pack;
 use super::output::{check_output, command_line, print_json, spinner, write_whole};
 use super::pictures::{Photographed, photographed};
 
-/// Make a page on which packs play clips and change faces, live: one HTML file that opens from disk
+/// Make a page on which packs play clips, emotions and faces, live: one HTML file that opens from disk
 ///
 /// The page runs the device's own code, compiled to WebAssembly, frame by frame: skeletons side by side, time, strength or
 /// expressiveness, joints, plots, foot contacts. Without packs it shows the two that come with the program; without clips, a
-/// made-up walk. A face pack with pictures and their landmarks shows the faces with a slider.
+/// made-up walk. An emotion pack makes its motion itself, at strengths that sliders change while it plays. A face pack with pictures and their landmarks shows the faces with a slider.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
   kinesic view
-  kinesic view angry.kin walk.bvh --out angry.html
-  kinesic view angry.kin walk.bvh --target angry-walk.bvh
+  kinesic view tired.kin walk.bvh --out tired.html
+  kinesic view tired.kin walk.bvh --target tired-walk.bvh
   kinesic view models/mechanics.kin walk.bvh dance.bvh
+  kinesic view anger.kin
   kinesic view smile.kin --image me.jpg --landmarks me.csv --out me.html")]
 pub struct Args {
     /// Packs (.kin) and clips (BVH, Kinect CSV, or folders of them), in any order
@@ -79,7 +81,17 @@ pub fn run(args: &Args) -> miette::Result<()> {
     }
     let bar = spinner();
     bar.set_message("reading");
-    let (face_packs, packs) = read_packs(&packs)?.into_iter().partition::<Vec<_>, _>(is_face);
+    let (face_packs, packs) =
+        read_packs(&packs)?.into_iter().partition::<Vec<_>, _>(|pack| holds(pack, |m| m.face().is_some()));
+    let (emotions, packs) = packs.into_iter().partition::<Vec<_>, _>(|pack| holds(pack, |m| m.emotion().is_some()));
+    if let (Some(emotion), Some(clip), []) = (emotions.first(), clips.first(), &packs[..]) {
+        return Err(miette!(
+            help = "leave the clip away, or name a pack that plays clips too: models/weary.kin",
+            "no pack plays {}: {}.kin holds emotions, whose motion comes from strengths alone",
+            clip.display(),
+            emotion.name
+        ));
+    }
     match (face_packs.first(), args.image.first()) {
         (Some(pack), None) => {
             return Err(miette!(
@@ -98,13 +110,15 @@ pub fn run(args: &Args) -> miette::Result<()> {
         _ => {}
     }
     let faces = args.landmarks.as_ref().map(|table| photographed(&args.image, table)).transpose()?.unwrap_or_default();
-    let mut shown = View { face_packs, faces: faces.into_iter().map(face).collect(), ..View::default() };
-    if !packs.is_empty() || !clips.is_empty() || shown.faces.is_empty() {
+    let mut shown = View { emotions, face_packs, faces: faces.into_iter().map(face).collect(), ..View::default() };
+    let alone = shown.emotions.is_empty() && shown.faces.is_empty();
+    if !packs.is_empty() || !clips.is_empty() || alone {
         shown.packs = if packs.is_empty() { own_packs() } else { packs };
         shown.clips = if clips.is_empty() { vec![made_walk(args.seed)?] } else { read_clips(&clips, args)? };
     }
     bar.set_message("playing");
-    let packs: Vec<String> = shown.packs.iter().chain(&shown.face_packs).map(|pack| pack.name.clone()).collect();
+    let packs = [&shown.packs, &shown.emotions, &shown.face_packs].into_iter().flatten();
+    let packs: Vec<String> = packs.map(|pack| pack.name.clone()).collect();
     let title = format!("kinesic: {}", packs.join(", "));
     let made = format!("Made by kinesic {} with: {}", env!("CARGO_PKG_VERSION"), command_line());
     let page = view::page(&title, &made, &shown, view::WASM).into_diagnostic()?;
@@ -131,9 +145,9 @@ pub fn run(args: &Args) -> miette::Result<()> {
     Ok(())
 }
 
-/// A pack that changes faces.
-fn is_face(pack: &ViewPack) -> bool {
-    pack.file.pack().is_ok_and(|pack| pack.metadata().models.iter().any(|model| model.face().is_some()))
+/// Whether a pack holds such a model. (One that cannot be read holds none; the page's maker says why.)
+fn holds(pack: &ViewPack, such: impl Fn(&ModelMeta) -> bool) -> bool {
+    pack.file.pack().is_ok_and(|pack| pack.metadata().models.iter().any(|model| such(&model)))
 }
 
 fn face(from: Photographed) -> ViewFace {

@@ -4,13 +4,15 @@
 //! |---|---|
 //! | `mod` | what is shown, and the file |
 //! | `scene` | a pack on a clip: poses as the page reads them, and the digest of what the host makes of them |
+//! | `emotion` | an emotion pack: its strengths, and digests of what the host plays |
 //! | `face` | a face pack on a picture: landmarks, the picture's warps, and the digest of the host's landmarks |
 //! | `assets/` | markup, style, scripts; `kinesic.wasm`, made of the crate `wasm/` by `./ci.sh wasm` |
 //!
 //! Everything is in the file: it opens from disk, without a network. The scripts share one scope, in this order: `engine.js` (the core,
-//! motions), `scene.js` (skeletons on a canvas), `plots.js` (curves), `controls.js` (sliders), `face.js` (pictures of faces), `app.js`
-//! (what is shown, time, what a test reads back).
+//! motions), `scene.js` (skeletons on a canvas), `plots.js` (curves), `controls.js` (sliders), `emotion.js` (emotion strength),
+//! `face.js` (pictures of faces), `app.js` (what is shown, time, what a test reads back).
 
+mod emotion;
 mod face;
 mod scene;
 
@@ -32,11 +34,12 @@ pub const WASM: &[u8] = include_bytes!("assets/kinesic.wasm");
 
 const PAGE: &str = include_str!("assets/page.html");
 const STYLE: &str = include_str!("assets/style.css");
-const SCRIPTS: [&str; 6] = [
+const SCRIPTS: [&str; 7] = [
     include_str!("assets/engine.js"),
     include_str!("assets/scene.js"),
     include_str!("assets/plots.js"),
     include_str!("assets/controls.js"),
+    include_str!("assets/emotion.js"),
     include_str!("assets/face.js"),
     include_str!("assets/app.js"),
 ];
@@ -68,6 +71,8 @@ pub struct View {
     pub packs: Vec<ViewPack>,
     /// Clips.
     pub clips: Vec<ViewClip>,
+    /// Packs that make a motion at strengths of emotions; they need no clip.
+    pub emotions: Vec<ViewPack>,
     /// Packs that change faces.
     pub face_packs: Vec<ViewPack>,
     /// Pictures of faces.
@@ -79,7 +84,7 @@ pub struct View {
 #[non_exhaustive]
 pub enum ViewError {
     /// Packs without something to play, or the other way round.
-    #[error("the page needs at least one pack and one clip, or a face pack and a picture")]
+    #[error("the page needs at least one pack and one clip, an emotion pack, or a face pack and a picture")]
     Empty,
     /// A pack is refused.
     #[error("{name}: {error}")]
@@ -127,6 +132,7 @@ struct Data {
     /// Frames over which outputs are compared, and the strength there.
     checked: usize,
     strength: f32,
+    emotions: Vec<emotion::EmotionData>,
     /// The joint that is plotted at first.
     joint: String,
     #[serde(rename = "facePacks")]
@@ -147,7 +153,7 @@ pub fn page(title: &str, made: &str, view: &View, wasm: &[u8]) -> Result<String,
     let half = |packs: &[ViewPack], of: usize| packs.is_empty() != (of == 0);
     if half(&view.packs, view.clips.len())
         || half(&view.face_packs, view.faces.len())
-        || view.packs.is_empty() && view.face_packs.is_empty()
+        || [&view.packs, &view.emotions, &view.face_packs].iter().all(|packs| packs.is_empty())
     {
         return Err(ViewError::Empty);
     }
@@ -158,6 +164,7 @@ pub fn page(title: &str, made: &str, view: &View, wasm: &[u8]) -> Result<String,
         scenes: Vec::new(),
         checked: CHECKED,
         strength: STRENGTH,
+        emotions: view.emotions.iter().map(emotion::data).collect::<Result<_, _>>()?,
         joint: String::new(),
         face_packs: Vec::new(),
         faces: view.faces.iter().map(face::data).collect::<Result<_, _>>()?,
@@ -173,7 +180,8 @@ pub fn page(title: &str, made: &str, view: &View, wasm: &[u8]) -> Result<String,
         data.face_scenes.push(view.faces.iter().map(|face| player.scene(face)).collect::<Result<_, _>>()?);
         data.face_packs.push(player.data()?);
     }
-    data.joint = scene::first_joint(&data.packs);
+    let bodies = data.packs.iter().map(|pack| &pack.body);
+    data.joint = scene::first_joint(bodies.chain(data.emotions.iter().map(|pack| &pack.body)).next());
     let json = serde_json::to_string(&data).unwrap_or_else(|error| unreachable!("plain data has no JSON: {error}"));
     // A script element ends at the first `</`, whatever it holds.
     let json = json.replace("</", "<\\/");

@@ -24,20 +24,47 @@ pub const STRENGTH: f32 = 1.5;
 
 type HostPose = Pose<MAX_JOINTS>;
 
-/// A pack as the scripts read it.
+/// A pack that plays clips as the scripts read it.
 #[derive(Serialize)]
 pub(super) struct PackData {
-    name: String,
+    #[serde(flatten)]
+    pub body: BodyData,
     engine: &'static str,
+    plausible: [f32; 2],
+}
+
+/// What the scripts read of any pack that moves a skeleton.
+#[derive(Serialize)]
+pub(super) struct BodyData {
+    name: String,
     rate: f32,
     size: usize,
-    plausible: [f32; 2],
     joints: Vec<JointData>,
     /// Joints that stand for the feet, left and right.
     feet: Vec<usize>,
     head: Option<usize>,
     legs: Vec<usize>,
     bytes: String,
+}
+
+impl BodyData {
+    pub fn new(name: &str, pack: &Pack, bytes: &[u8], rig: &Rig) -> Self {
+        let (skeleton, map) = (&rig.skeleton, &rig.map);
+        let foot = |toe, ankle| map.joint(toe).or(map.joint(ankle));
+        Self {
+            name: name.to_owned(),
+            rate: pack.metadata().frame_rate,
+            size: bytes.len(),
+            joints: joints(skeleton, map),
+            feet: [foot(Canonical::LToe, Canonical::LAnkle), foot(Canonical::RToe, Canonical::RAnkle)]
+                .into_iter()
+                .flatten()
+                .collect(),
+            head: map.joint(Canonical::Head),
+            legs: legs(skeleton, map),
+            bytes: BASE64_STANDARD.encode(bytes),
+        }
+    }
 }
 
 #[derive(Serialize)]
@@ -110,28 +137,12 @@ impl<'p> Player<'p> {
     }
 
     pub fn data(&self) -> PackData {
-        let (skeleton, map) = (&self.rig.skeleton, &self.rig.map);
-        let foot = |toe, ankle| map.joint(toe).or(map.joint(ankle));
         let (engine, plausible) = match self.engine {
             Engine::Translator(range) => ("translator", range),
             Engine::Components(range) => ("components", range),
             Engine::Mechanics => ("mechanics", [0.0, 2.0]),
         };
-        PackData {
-            name: self.name.to_owned(),
-            engine,
-            rate: self.pack.metadata().frame_rate,
-            size: self.bytes.len(),
-            plausible,
-            joints: joints(skeleton, map),
-            feet: [foot(Canonical::LToe, Canonical::LAnkle), foot(Canonical::RToe, Canonical::RAnkle)]
-                .into_iter()
-                .flatten()
-                .collect(),
-            head: map.joint(Canonical::Head),
-            legs: legs(skeleton, map),
-            bytes: BASE64_STANDARD.encode(self.bytes),
-        }
+        PackData { body: BodyData::new(self.name, &self.pack, self.bytes, &self.rig), engine, plausible }
     }
 
     pub fn scene(&self, clip: &ViewClip) -> Result<SceneData, ViewError> {
@@ -197,9 +208,9 @@ fn legs(skeleton: &Skeleton, map: &JointMap) -> Vec<usize> {
     legs
 }
 
-/// A joint in which manners show: an elbow.
-pub(super) fn first_joint(packs: &[PackData]) -> String {
+/// A joint of a pack in which manners show: an elbow.
+pub(super) fn first_joint(body: Option<&BodyData>) -> String {
     let elbow = |joint: &&JointData| joint.part == Some(Canonical::LElbow.name());
-    let joints = packs.first().map_or(&[][..], |pack| &pack.joints);
+    let joints = body.map_or(&[][..], |body| &body.joints);
     joints.iter().find(elbow).or(joints.first()).map_or_else(String::new, |joint| joint.name.clone())
 }

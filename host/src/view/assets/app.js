@@ -1,10 +1,8 @@
 // The page: what is shown, time, and what a test reads back (`kinesic.state()`).
 
-const SLOT = 1.3; // metres between figures
-
 const kinesic = {
   data: JSON.parse($("data").textContent),
-  cores: [], controls: [], figures: [], results: [],
+  cores: [], controls: [], emotions: [], figures: [], results: [],
   clip: 0, time: 0, duration: 1, playing: false, joint: 0,
   frames: 0, drawn: 0, cost: { picture: 0, step: 0 }, bits: [], errors: [],
 };
@@ -29,12 +27,13 @@ function recorded(index, clip) {
   return tracks.get(key);
 }
 
-// Which figures there are: the source, one result a pack, the target.
+// Which figures there are: the source, one result a pack, the target; two an emotion pack.
 function show() {
   const { data, controls, clip } = kinesic;
   const shown = data.packs.map((_, index) => index).filter((index) => controls[index].shown);
-  const first = shown[0] ?? 0;
-  const figures = [{ track: recorded(first, clip).source, name: "source", role: "source" }];
+  const clips = data.packs.length ? recorded(shown[0] ?? 0, clip) : null;
+  const figures = [];
+  if (clips) figures.push({ track: clips.source, name: "source", role: "source" });
   kinesic.results = data.packs.map((pack, index) => {
     if (!controls[index].shown) return null;
     const { source } = recorded(index, clip);
@@ -45,20 +44,30 @@ function show() {
     if (kinesic.results[index].other) kinesic.results[index].begin();
     figures.push({ track: kinesic.results[index], name: data.packs[index].name, role: "result" });
   }
-  const { target } = recorded(first, clip);
-  if (target) figures.push({ track: target, name: "target", role: "target" });
+  if (clips?.target) figures.push({ track: clips.target, name: "target", role: "target" });
+  // Emotions make their own motion, as long as the clip; without one the first of them stays.
+  const emotions = kinesic.emotions.filter((emotion) => emotion.controls.shown);
+  if (!clips && !emotions.length) emotions.push(kinesic.emotions[0]);
+  const length = clips ? (clips.source.frames - 1) / clips.source.rate : 0;
+  const duration = Math.max(length, ...emotions.map(({ pack }) => pack.seconds ?? (clips ? 0 : LONG)));
+  for (const emotion of emotions) {
+    emotion.prepare(duration);
+    kinesic.results.push(emotion.track);
+    figures.push(...emotion.figures());
+  }
   const placed = figures.map((figure, k) => {
     const [x, , z] = (figure.track.source ?? figure.track).place(0);
     return { ...figure, index: k, shift: [(k - (figures.length - 1) / 2) * SLOT - x, -z] };
   });
   kinesic.figures = placed;
-  const { source } = recorded(first, clip);
-  kinesic.duration = Math.max(1e-3, (source.frames - 1) / source.rate);
-  kinesic.frames = source.frames;
-  $("time").max = source.frames - 1;
+  kinesic.scene.stand(placed.length);
+  const { rate } = figures[0].track;
+  kinesic.frames = Math.round(duration * rate) + 1;
+  kinesic.duration = Math.max(1e-3, (kinesic.frames - 1) / rate);
+  $("time").max = kinesic.frames - 1;
   seek(Math.min(kinesic.time, kinesic.duration));
   $("legend").replaceChildren(...placed.map((figure) =>
-    element("li", {}, element("i", { style: `background: var(--c${figure.index % 6})` }), figure.name + (figure.role === "result" ? " (result)" : ""))));
+    element("li", {}, element("i", { style: `background: var(--c${figure.index % 6})` }), figure.says ?? figure.name + (figure.role === "result" ? " (result)" : ""))));
   const names = figures[0].track.pack.joints.map(({ name }) => name);
   const chosen = $("joint").selectedOptions[0]?.textContent ?? data.joint;
   $("joint").replaceChildren(...names.map((name, joint) => element("option", { value: joint, textContent: name })));
@@ -68,7 +77,13 @@ function show() {
   kinesic.stale = true;
 }
 
+// Where a person goes, and where a round begins again.
 function seek(seconds) {
+  for (const emotion of kinesic.emotions) emotion.sought(seconds);
+  pass(seconds);
+}
+
+function pass(seconds) {
   kinesic.time = Math.max(0, Math.min(kinesic.duration, seconds));
   const rate = (kinesic.frames - 1) / kinesic.duration;
   $("time").value = Math.round(kinesic.time * rate);
@@ -111,19 +126,28 @@ function plots() {
   plot.feet.rows(figures, time, duration, palette);
 }
 
+// The shift of a figure that is carried along beside the first one: by how much farther that one has gone.
+function carried({ track, shift }, frame) {
+  const first = kinesic.figures[0].track;
+  const [own, its] = [track.way(frame), first.way(first.frame(kinesic.time))];
+  return shift.map((at, axis) => at + its[axis] - own[axis]);
+}
+
 function picture() {
   const palette = colours();
   const centre = [0, 0];
+  const follow = $("follow").checked;
   const drawn = kinesic.figures.map((figure) => {
     const { track } = figure;
     const frame = track.frame(kinesic.time);
     const [x, , z] = track.place(frame);
-    centre[0] += (x + figure.shift[0]) / kinesic.figures.length;
-    centre[1] += (z + figure.shift[1]) / kinesic.figures.length;
+    const shift = follow && figure.carried ? carried(figure, frame) : figure.shift;
+    centre[0] += (x + shift[0]) / kinesic.figures.length;
+    centre[1] += (z + shift[1]) / kinesic.figures.length;
     const stands = track.pack.feet.filter((_, foot) => figure.contacts?.[foot][frame]);
-    return { ...figure, frame, stands, colour: palette[`c${figure.index % 6}`] };
+    return { ...figure, shift, frame, stands, colour: palette[`c${figure.index % 6}`] };
   });
-  if ($("follow").checked) [kinesic.scene.target[0], kinesic.scene.target[2]] = centre;
+  if (follow) [kinesic.scene.target[0], kinesic.scene.target[2]] = centre;
   kinesic.scene.draw(drawn, palette);
 }
 
@@ -134,7 +158,8 @@ function tick(now) {
   last = now;
   if (kinesic.playing) {
     const at = kinesic.time + elapsed * Number($("speed").value);
-    seek(at > kinesic.duration ? 0 : at);
+    if (at > kinesic.duration) seek(0);
+    else pass(at);
   }
   const begin = performance.now();
   let made = 0;
@@ -164,11 +189,13 @@ async function compare(module) {
       await new Promise((done) => setTimeout(done));
     }
   }
+  await compareEmotions(module, data, kinesic.bits);
   await kinesic.face?.compare(module, kinesic.bits);
   const same = kinesic.bits.every(({ here, host }) => here === host);
   const most = (of) => Math.max(0, ...kinesic.bits.map((each) => each[of] ?? 0));
-  const over = [[most("frames"), "frames of every clip"], [most("changes"), "strengths of every face"]].filter(([count]) => count);
-  $("bits").textContent = same ? `Same output bits as the host over ${over.map((each) => each.join(" ")).join(", ")} and pack.` : "OUTPUT DIFFERS from the host's: see kinesic.bits in the console.";
+  const over = [[most("frames"), "frames of every clip and pack"], [most("steps"), "frames of every emotion pack, strengths changing"],
+    [most("changes"), "strengths of every face and pack"]].filter(([count]) => count);
+  $("bits").textContent = same ? `Same output bits as the host over ${over.map((each) => each.join(" ")).join("; ")}.` : "OUTPUT DIFFERS from the host's: see kinesic.bits in the console.";
   kinesic.compared = true;
 }
 
@@ -180,23 +207,26 @@ kinesic.state = () => ({
     contacts: contacts?.map((stands) => [...stands].join("")) })),
   results: kinesic.results.map((result) => result && { strength: result.strength, passes: result.passes, done: result.done, frames: result.frames, changed: result.changed, mixed: Boolean(result.mixed) }),
   controls: kinesic.controls.map((each) => ({ ...each, mask: [...each.mask] })),
+  emotions: kinesic.emotions.map((emotion) => emotion.state()),
   face: kinesic.face?.state(),
 });
 
-// Skeletons: everything about packs that play clips.
+// Skeletons: everything about packs that play clips, and about emotions.
 async function motions(module) {
   const { data } = kinesic;
   for (const pack of data.packs) {
-    pack.bones = pack.joints.flatMap(({ parent }, joint) => (parent === null ? [] : [[parent, joint]]));
+    pack.bones = bones(pack);
     kinesic.cores.push(await Core.make(module, pack));
     kinesic.controls.push({ strength: 1, mask: pack.joints.map(() => 1), shown: true, other: null });
   }
+  for (const [index, pack] of data.emotions.entries()) kinesic.emotions.push(await Emotion.make(module, pack, index));
   kinesic.scene = new Scene($("scene"));
   kinesic.plot = { angle: new Plot($("angle"), $("angles"), 1), speed: new Plot($("velocity"), $("speeds"), 2), feet: new Plot($("contacts"), $("feet"), 0) };
   for (const plot of Object.values(kinesic.plot)) plot.seek = (share) => seek(share * kinesic.duration);
   $("clip").append(...data.clips.map(({ name }, k) => element("option", { value: k, textContent: name })));
   $("clip").addEventListener("change", () => { kinesic.clip = Number($("clip").value); kinesic.time = 0; show(); });
-  $("packs").append(...data.packs.map(panel));
+  $("clip").closest("label").hidden = !data.clips.length;
+  $("packs").append(...data.packs.map(panel), ...kinesic.emotions.map((emotion) => emotion.panel()));
   $("joint").addEventListener("change", () => { kinesic.joint = Number($("joint").value); kinesic.stale = true; });
   const rate = () => (kinesic.frames - 1) / kinesic.duration;
   const step = (frames) => { play(false); seek(Math.round(kinesic.time * rate() + frames) / rate()); };
@@ -224,9 +254,10 @@ async function motions(module) {
 async function begin() {
   const { data } = kinesic;
   const module = await WebAssembly.compile(bytes(data.wasm));
-  $("motions").hidden = !data.packs.length;
+  const moving = data.packs.length + data.emotions.length;
+  $("motions").hidden = !moving;
   $("faces").hidden = !data.faces.length;
-  if (data.packs.length) await motions(module);
+  if (moving) await motions(module);
   if (data.faces.length) kinesic.face = await Faces.make(module, data);
   kinesic.ready = true;
   await compare(module);

@@ -15,13 +15,15 @@ function element(tag, properties, ...children) {
 
 // A labelled slider that shows its value.
 function slider({ id, label, min, max, step, value, change }) {
-  const output = element("output", { textContent: Number(value).toFixed(2) });
+  const output = element("output", {});
   output.htmlFor = id;
   const input = element("input", { id, type: "range", min, max, step, value });
+  const say = () => input.setAttribute("aria-valuetext", (output.textContent = Number(input.value).toFixed(2)));
   input.addEventListener("input", () => {
-    output.textContent = Number(input.value).toFixed(2);
+    say();
     change(Number(input.value));
   });
+  say();
   return element("label", { className: "slider", htmlFor: id }, element("span", { textContent: label }), output, input);
 }
 

@@ -1,6 +1,6 @@
 // The core in WebAssembly: one instance a pack, and the motions that it makes.
 
-// What can be turned, an engine. Faces have a file of their own.
+// What can be turned, an engine. Emotions and faces have files of their own.
 const CONTROLS = {
   translator: { label: "Strength", help: "0 = the source, 1 = as learned" },
   components: { label: "Strength", help: "0 = the source, 1 = as learned" },
@@ -10,7 +10,7 @@ const CONTROLS = {
 const bytes = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
 const floats = (text) => new Float32Array(bytes(text).buffer);
 
-// An instance of the core with a pack in it, taken by `load` or `load_face`.
+// An instance of the core with a pack in it, taken by `load`, `load_emotion` or `load_face`.
 async function instance(module, pack, load) {
   const { exports } = await WebAssembly.instantiate(module, {});
   const data = bytes(pack.bytes);
@@ -39,6 +39,9 @@ class Core {
     return core;
   }
 }
+
+// Parent and child of every bone.
+const bones = (pack) => pack.joints.flatMap(({ parent }, joint) => (parent === null ? [] : [[parent, joint]]));
 
 // Poses and the places of their joints, frame by frame.
 class Track {
@@ -74,6 +77,20 @@ class Track {
       track.place(frame).set(core.positions);
     }
     return track;
+  }
+
+  // Where the way of the root has led at a frame, without its sway: how far its mean over a second (less near the ends) is from the
+  // first frame, x and z in m.
+  way(frame) {
+    const around = Math.min(Math.round(this.rate / 2), frame, this.frames - 1 - frame);
+    const [x0, , z0] = this.place(0);
+    const sum = [0, 0];
+    for (let at = frame - around; at <= frame + around; at++) {
+      const [x, , z] = this.place(at);
+      sum[0] += x - x0;
+      sum[1] += z - z0;
+    }
+    return sum.map((of) => of / (2 * around + 1));
   }
 
   // Angle of a joint's rotation, degrees.

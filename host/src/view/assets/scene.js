@@ -1,26 +1,41 @@
 // Skeletons in space on a plain canvas: a camera that turns about a point, lines and discs.
 
-const UPRIGHT = { yaw: 0.35, pitch: 0.2, distance: 5.2 };
+const SLOT = 1.3; // metres between figures
+const UPRIGHT = { yaw: 0.35, pitch: 0.2 };
 
 class Scene {
   constructor(canvas) {
     this.canvas = canvas;
     this.context = canvas.getContext("2d");
-    this.camera = { ...UPRIGHT };
     this.target = [0, 0.9, 0];
+    this.count = 1;
+    this.reset();
     this.listen();
   }
 
+  // As many figures stand there: all of them are to be seen, unless the person has chosen a view.
+  stand(count) {
+    this.count = count;
+    if (!this.moved) this.reset();
+  }
+
+  // So far away that people with their arms up, and a row of them, fill the picture.
   reset() {
-    this.camera = { ...UPRIGHT };
+    const [width, height] = fit(this.canvas);
+    const row = SLOT * (this.count - 1);
+    const across = (focal(width, height) / width) * (row + 1.1) + 0.5 * row * Math.sin(UPRIGHT.yaw);
+    this.camera = { ...UPRIGHT, distance: Math.max(across, (focal(width, height) / height) * 3.25) };
+    this.moved = false;
   }
 
   turn(yaw, pitch) {
+    this.moved = true;
     this.camera.yaw += yaw;
     this.camera.pitch = Math.max(-0.2, Math.min(1.5, this.camera.pitch + pitch));
   }
 
   zoom(factor) {
+    this.moved = true;
     this.camera.distance = Math.max(1.5, Math.min(30, this.camera.distance * factor));
   }
 
@@ -66,14 +81,14 @@ class Scene {
     const [width, height] = fit(this.canvas);
     const { yaw, pitch, distance } = this.camera;
     const [sy, cy, sp, cp] = [Math.sin(yaw), Math.cos(yaw), Math.sin(pitch), Math.cos(pitch)];
-    const focal = Math.min(1.6 * height, width);
+    const scaled = focal(width, height);
     return (x, y, z) => {
       const [dx, dy, dz] = [x - this.target[0], y - this.target[1], z - this.target[2]];
       const right = cy * dx - sy * dz;
       const away = -(sy * dx + cy * dz);
       const depth = distance + cp * away - sp * dy;
       if (depth < 0.2) return null;
-      const scale = focal / depth;
+      const scale = scaled / depth;
       return [width / 2 + scale * right, height / 2 - scale * (cp * dy + sp * away), scale];
     };
   }
@@ -166,6 +181,9 @@ function tip(track, frame, joint, { tip: offset }, place) {
   }
   return [place[0] + v[0], place[1] + v[1], place[2] + v[2]];
 }
+
+// Pixels that something a metre wide has in a metre's distance.
+const focal = (width, height) => Math.min(1.6 * height, width);
 
 // A canvas as many pixels wide as its box is; returns its size in pixels.
 function fit(canvas) {

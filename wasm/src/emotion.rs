@@ -1,0 +1,57 @@
+//! Emotion strength: a motion that needs no source.
+
+use kinesic::emotion::{Emotion, EmotionState};
+use kinesic::model::ATTRIBUTES;
+use kinesic::{LoadError, Pack, Pose, Skeleton};
+
+use crate::JOINTS;
+use crate::engine::HostPose;
+
+/// Strengths of all attributes.
+pub type Strengths = [f32; ATTRIBUTES];
+
+const KEYS: usize = 64;
+
+type State = EmotionState<JOINTS, KEYS>;
+
+/// The emotion model at the host's capacity, what it remembers, and what it remembered at a frame that may come again.
+pub struct Player {
+    model: Emotion<'static, JOINTS, KEYS, 256>,
+    state: State,
+    kept: State,
+}
+
+impl Player {
+    /// At the first keyframe.
+    pub fn load(pack: &Pack<'static>) -> Result<Self, LoadError> {
+        Ok(Self { model: Emotion::load(pack)?, state: State::new(), kept: State::new() })
+    }
+
+    /// The skeleton that poses have.
+    pub fn skeleton(&self) -> &Skeleton<'static> {
+        self.model.skeleton()
+    }
+
+    /// Forgets the past.
+    pub fn reset(&mut self) {
+        self.state.reset();
+    }
+
+    /// Remembers this frame.
+    pub fn keep(&mut self) {
+        self.kept = self.state;
+    }
+
+    /// Goes back to the frame that was kept.
+    pub fn back(&mut self) {
+        self.state = self.kept;
+    }
+
+    /// The pose now, and the strengths that it plays; then `dt` seconds pass.
+    pub fn step(&mut self, strength: &Strengths, dt: f32) -> (HostPose, Strengths) {
+        let mut out = Pose::identity();
+        self.state.strength = *strength;
+        self.model.step(&mut self.state, dt, &mut out);
+        (out, self.state.playing().unwrap_or_default())
+    }
+}
