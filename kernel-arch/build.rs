@@ -6,7 +6,7 @@ use std::env::var;
 /// ARMv8-M cores with the DSP extension.
 const DSP: [&str; 5] = ["cortex-m33", "cortex-m35p", "cortex-m52", "cortex-m55", "cortex-m85"];
 
-/// Cores with Helium, for which the compiler makes vectors of the portable f32 loop.
+/// Cores with Helium. The compiler makes vectors of the portable f32 loop itself.
 const HELIUM: [&str; 3] = ["cortex-m52", "cortex-m55", "cortex-m85"];
 
 fn main() {
@@ -24,7 +24,11 @@ fn main() {
     let cpu =
         flags.split('\x1f').filter_map(|flag| flag.split_once("target-cpu=")).next_back().map_or("", |(_, cpu)| cpu);
     let mainline = target.starts_with("thumbv8m.main");
-    if target.starts_with("thumbv7em") || mainline && DSP.contains(&cpu) && !flags.contains("-dsp") {
+    let (helium, dsp) =
+        (HELIUM.contains(&cpu) && !flags.contains("-mve"), DSP.contains(&cpu) && !flags.contains("-dsp"));
+    if mainline && helium && dsp {
+        choose("kinesic_tile", "helium");
+    } else if target.starts_with("thumbv7em") || mainline && dsp {
         choose("kinesic_tile", "dsp");
     } else if target.starts_with("thumbv6m") {
         choose("kinesic_tile", "thumb1");

@@ -7,7 +7,7 @@ use crate::{Inputs, Weights};
 
 unsafe extern "C" {
     /// Reads `groups` elements at each pointer (word aligned) and adds to the four sums. Keeps every register that the procedure
-    /// call standard says, 40 bytes of stack at most.
+    /// call standard says, 104 bytes of stack at most.
     fn kinesic_tile(weights: *const Weights, inputs: *const Inputs, groups: usize, sums: *mut [i32; 4]);
 }
 

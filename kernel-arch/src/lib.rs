@@ -2,13 +2,15 @@
 //! of f32; and the square root, [`sqrt`].
 //!
 //! [`portable`] is the definition of the loops, in safe Rust. Where the compiler does not find the right instructions there is
-//! assembly: SMLAD on cores with the DSP extension, MULS on ARMv6-M, block loads and VSQRT of the single-precision FPU. On every
+//! assembly: SMLAD on cores with the DSP extension, VMLADAVA on those with Helium, MULS on ARMv6-M, block loads and VSQRT of the single-precision FPU. On every
 //! other core the portable loops run. The bits are the same: integers are modulo 2^32, floats have one order and two roundings a
 //! multiply-add, roots are correctly rounded. Without the feature `asm` the crate holds no unsafe code.
 #![no_std]
 
 #[cfg(kinesic_tile)]
 mod arm;
+#[cfg(kinesic_tile = "helium")]
+mod helium;
 pub mod portable;
 pub mod soft;
 #[cfg(kinesic_tile = "thumb1")]
