@@ -1,8 +1,6 @@
 //! The loop in assembly. A function of its own rather than inline assembly, because r6 and r7 cannot be operands and ARMv6-M
 //! names no register above r7.
 
-use core::arch::global_asm;
-
 use crate::{Inputs, Weights};
 
 unsafe extern "C" {
@@ -36,7 +34,7 @@ macro_rules! extension {
 
 // Cortex-M4: 28 cycles for 16 multiply-adds (two block loads of 3 and 5, 16 data instructions, 4 for the loop).
 #[cfg(kinesic_tile = "dsp")]
-global_asm!(
+core::arch::global_asm!(
     extension!(),
     ".syntax unified",
     ".section .text.kinesic_tile,\"ax\",%progbits",
@@ -81,7 +79,7 @@ global_asm!(
 
 // Cortex-M0+: 74 cycles for 16 multiply-adds with the one-cycle multiplier. The sums are in r8 to r11: ADD reaches them.
 #[cfg(kinesic_tile = "thumb1")]
-global_asm!(
+core::arch::global_asm!(
     ".syntax unified",
     ".macro kinesic_row sum",
     "ldm r0!, {{r2}}",

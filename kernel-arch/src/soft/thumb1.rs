@@ -81,7 +81,7 @@ macro_rules! align {
 // Cortex-M0+: a sum 51 to 58 cycles, a product 57, a quotient 165, call and return included, where nothing is rare.
 global_asm!(
     ".syntax unified",
-    ".section .text.kinesic_soft_float,\"ax\",%progbits",
+    ".section .text.__aeabi_fadd,\"ax\",%progbits",
     ".p2align 2",
     ".global __aeabi_fsub",
     ".type __aeabi_fsub,%function",
@@ -164,6 +164,8 @@ global_asm!(
     "10:",
     ".word {add}",
     ".size __aeabi_fadd, . - __aeabi_fadd",
+    ".section .text.__aeabi_fmul,\"ax\",%progbits",
+    ".p2align 2",
     ".global __aeabi_fmul",
     ".type __aeabi_fmul,%function",
     ".thumb_func",
@@ -237,6 +239,8 @@ global_asm!(
     "10:",
     ".word {mul}",
     ".size __aeabi_fmul, . - __aeabi_fmul",
+    ".section .text.__aeabi_fdiv,\"ax\",%progbits",
+    ".p2align 2",
     // In front: the end is too far away for a conditional branch.
     "9:",
     "ldr r2, 10f",
