@@ -31,42 +31,42 @@ const TRANSLATOR: [Workload; 2] = [
     Workload {
         name: "translator",
         size: "a model a joint, 25 joints, 8225 multiply-adds",
-        microseconds: [34_442, 11_418, 534, 610, 497, 168],
+        microseconds: [12_356, 8_331, 465, 531, 422, 142],
     },
     Workload {
         name: "translator-body",
         size: "whole body, 25 joints, 4825 multiply-adds",
-        microseconds: [27_428, 9_146, 383, 439, 351, 132],
+        microseconds: [9_521, 6_475, 309, 355, 278, 106],
     },
 ];
 const MECHANICS: [Workload; 2] = [
     Workload {
         name: "mechanics",
         size: "f32, 31 joints, 13992 multiply-adds",
-        microseconds: [50_218, 16_503, 686, 779, 599, 243],
+        microseconds: [19_266, 12_898, 568, 640, 499, 202],
     },
     Workload {
         name: "mechanics-i8",
         size: "the same after kinesic quantize",
-        microseconds: [12_759, 4_319, 540, 627, 553, 198],
+        microseconds: [5_811, 3_546, 452, 519, 412, 167],
     },
 ];
 const COMPONENTS: [Workload; 1] = [Workload {
     name: "components",
     size: "23 joints, 4140 multiply-adds",
-    microseconds: [25_297, 8_399, 350, 401, 328, 123],
+    microseconds: [8_724, 5_898, 269, 308, 242, 94],
 }];
 const FACE: [Workload; 1] =
-    [Workload { name: "face", size: "12 clusters, 10 hidden units", microseconds: [7_580, 2_625, 136, 157, 123, 45] }];
+    [Workload { name: "face", size: "12 clusters, 10 hidden units", microseconds: [3_015, 2_085, 132, 152, 121, 44] }];
 const EMOTION: [Workload; 2] = [
     Workload {
         name: "emotion-play",
         size: "a frame, 19 joints, 13 keyframes",
-        microseconds: [13_701, 4_616, 253, 289, 249, 91],
+        microseconds: [4_543, 2_993, 186, 214, 179, 68],
     },
     Workload {
         name: "emotion-change",
         size: "a change of strength, 40 components",
-        microseconds: [191_143, 62_855, 2_297, 2_642, 1_980, 763],
+        microseconds: [73_704, 50_036, 2_241, 2_576, 1_965, 747],
     },
 ];
