@@ -35,7 +35,7 @@ fn shaped(word: u32, choice: u32) -> u32 {
         0 => word,
         1 => word & 0xff80_0000,
         2 => (word & 0xff80_0000).wrapping_sub(1 + (choice >> 8 & 3)),
-        3 => word & 0xff80_0000 | 1 + (choice >> 8 & 3),
+        3 => word & 0xff80_0000 | (1 + (choice >> 8 & 3)),
         4 => word & 0xfff0_0000,
         5 => word & 0x807f_ffff,
         6 => word & 0x807f_ffff | 0x7f00_0000,
@@ -49,7 +49,7 @@ fn partner(a: u32, b: u32, choice: u32) -> u32 {
     match choice & 7 {
         0 => a ^ sign ^ (b & 7),
         1 => (a ^ sign) & 0xff80_0000 | b & 0x007f_ffff,
-        2..=4 => (a ^ b & sign).wrapping_sub((b >> 3) % 30 << 23),
+        2..=4 => (a ^ b & sign).wrapping_sub(((b >> 3) % 30) << 23),
         _ => shaped(b, choice >> 3),
     }
 }

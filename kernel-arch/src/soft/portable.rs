@@ -230,7 +230,7 @@ mod tests {
                 0 => word,
                 1 => word & 0xff80_0000,
                 2 => (word & 0xff80_0000).wrapping_sub(1 + (choice >> 8 & 3)),
-                3 => word & 0xff80_0000 | 1 + (choice >> 8 & 3),
+                3 => word & 0xff80_0000 | (1 + (choice >> 8 & 3)),
                 4 => word & 0xfff0_0000,
                 5 => word & 0x807f_ffff,
                 6 => word & 0x807f_ffff | 0x7f00_0000,
@@ -240,7 +240,7 @@ mod tests {
                 // Near to `a`, so that much is cancelled; or a few binades away, where rounding is decided by few bits.
                 0 => a ^ SIGN ^ (b & 7),
                 1 => (a ^ SIGN) & 0xff80_0000 | b & 0x007f_ffff,
-                2..=4 => (a ^ b & SIGN).wrapping_sub((b >> 3) % 30 << 23),
+                2..=4 => (a ^ b & SIGN).wrapping_sub(((b >> 3) % 30) << 23),
                 _ => shaped(b, choice >> 3),
             };
             [shaped(a, choice), b]
