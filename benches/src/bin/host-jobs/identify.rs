@@ -3,13 +3,12 @@
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-use faer::linalg::solvers::Solve;
-use faer::{Mat, MatRef, Side};
+use faer::{Mat, MatRef};
 use kinesic_host::align::{AlignError, Series, Settings, align};
 use kinesic_host::prepare::Source;
 use kinesic_host::rig::Locals;
 use kinesic_host::translate::Dynamics;
-use kinesic_host::translate::identify::dynamics;
+use kinesic_host::translate::identify::identify;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use serde_json::{Value, json};
@@ -20,8 +19,6 @@ use kinesic_benches::measure::{peak_mib, timed, write};
 const ORDER: usize = 40;
 const FRAMES: f64 = 6000.0;
 const FRAME_RATE: f64 = 60.0;
-/// Penalty on an output weight, as a share of its feature's power.
-const RIDGE: f64 = 1e-4;
 /// Pairs of poles of the made system.
 const POLES: usize = 8;
 /// Noise of the made system's outputs, in their deviations.
@@ -107,51 +104,15 @@ fn run(folder: &Path, u: &Mat<f64>, y: &Mat<f64>, frames: usize) -> Result<Value
     let train = |m: &Mat<f64>| vec![m.subrows(0, frames).to_owned()];
     let covered = 0..frames;
     let (inputs, outputs, covered) = (train(u), train(y), [covered]);
-    let (seconds, model) = timed(|| {
-        let dynamics = dynamics(&inputs, &outputs, &covered, ORDER, FRAME_RATE);
-        Model::new(dynamics, &inputs[0], &outputs[0])
-    });
+    let (seconds, model) = timed(|| identify(&inputs, &outputs, &covered, ORDER, FRAME_RATE));
     let peak = peak_mib();
     let model = model.ok_or("nothing identified")?;
-    let simulated = model.apply(&u.subrows(frames, u.nrows() - frames).to_owned());
-    let radius = model.dynamics.transition.iter().map(|[a, b, c, d]| (a * d - b * c).abs().sqrt()).fold(0.0, f64::max);
+    let (simulated, radius) = (model.simulate(&u.subrows(frames, u.nrows() - frames).to_owned()), model.radius());
     let test = y.subrows(frames, y.nrows() - frames);
     Ok(json!({
         "seconds": seconds, "peak_mib": peak, "fit": fit(test, simulated.as_ref()), "radius": radius,
         "order": ORDER, "frames": frames, "settle": SETTLE,
     }))
-}
-
-/// Identified dynamics, and the output by least squares on their simulation, as `kinesic train` does it.
-struct Model {
-    dynamics: Dynamics,
-    /// `[states + inputs x outputs]`.
-    output: Mat<f64>,
-    constant: Mat<f64>,
-}
-
-impl Model {
-    fn new(dynamics: Dynamics, u: &Mat<f64>, y: &Mat<f64>) -> Option<Self> {
-        let features = features(&dynamics, u);
-        let (centred, target) = (made::centred(features.as_ref()), made::centred(y.as_ref()));
-        let mut normal = centred.transpose() * &centred;
-        (0..normal.nrows()).for_each(|k| normal[(k, k)] *= 1.0 + RIDGE);
-        let output = normal.llt(Side::Lower).ok()?.solve(centred.transpose() * target);
-        let mean = |m: &Mat<f64>| Mat::from_fn(1, m.ncols(), |_, c| m.col(c).sum() / m.nrows() as f64);
-        let constant = mean(y) - mean(&features) * &output;
-        Some(Self { dynamics, output, constant })
-    }
-
-    fn apply(&self, u: &Mat<f64>) -> Mat<f64> {
-        let found = features(&self.dynamics, u) * &self.output;
-        Mat::from_fn(found.nrows(), found.ncols(), |t, c| found[(t, c)] + self.constant[(0, c)])
-    }
-}
-
-/// States and inputs of every frame.
-fn features(dynamics: &Dynamics, u: &Mat<f64>) -> Mat<f64> {
-    let (states, count) = (dynamics.states_before(u), dynamics.states());
-    Mat::from_fn(u.nrows(), count + u.ncols(), |t, k| if k < count { states[(t, k)] } else { u[(t, k - count)] })
 }
 
 /// `100 (1 - |y - found| / |y - mean|)` of unseen frames, %, mean over the outputs.
