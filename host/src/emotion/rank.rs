@@ -49,10 +49,13 @@ impl Ranked {
     }
 }
 
+/// Down to here the samples of [`Curvature`] will do; what follows corrects what they lack.
+const ROUGH: f64 = 1e-3;
+
 /// Minimises from `start` (zeros: `&[]`). Only differences of samples count: subtract a mean or not.
 ///
-/// Cost of a conjugate-gradient step: `2 rows x columns` multiply-adds and two a violated pair. Memory: the samples in single
-/// precision, a few vectors.
+/// Cost of a conjugate-gradient step: `2 rows x columns` multiply-adds and two a violated pair. Memory: the samples in 16 bits,
+/// a few vectors.
 pub fn rank(samples: &Samples, pairs: &Pairs, options: &RankOptions, start: &[f64]) -> Ranked {
     rank_with(samples, &Curvature::new(samples), pairs, options, start)
 }
@@ -65,40 +68,24 @@ pub fn rank_with(
     options: &RankOptions,
     start: &[f64],
 ) -> Ranked {
-    let mut problem = Problem::new(samples, curvature, pairs, options.cost);
-    let mut weights = vec![0.0; samples.columns()];
-    weights.iter_mut().zip(start).for_each(|(to, from)| *to = *from);
-    let mut scores = Vec::new();
-    samples.product(&weights, &mut scores);
-    let mut gradient = vec![0.0; weights.len()];
-    let mut objective = problem.gradient(&weights, &scores, &mut gradient);
-    let mut history = vec![objective];
-    // A warm start begins with a small gradient: the share is of what zero would have.
-    let first = if start.is_empty() { norm(&gradient) } else { problem.norm_at_zero() };
-    let mut moved = Vec::new();
-    for _ in 0..options.max_steps {
-        let size = norm(&gradient);
-        if size <= options.tolerance * first {
-            break;
-        }
-        let rest = (size / first).sqrt().min(0.1);
-        let step = problem.newton_step(&gradient, rest);
-        samples.product(&step, &mut moved);
-        let length = problem.line_search(&weights, &scores, &step, &moved);
-        let before = (weights.clone(), scores.clone(), objective);
-        add_scaled(&mut weights, length, &step);
-        add_scaled(&mut scores, length, &moved);
-        objective = problem.gradient(&weights, &scores, &mut gradient);
-        // Where only rounding is left to gain.
-        if objective >= before.2 {
-            if objective > before.2 {
-                weights = before.0;
-            }
-            break;
-        }
-        history.push(objective);
+    // Most steps are made where a quarter of the memory is read.
+    let rough = RankOptions { tolerance: ROUGH.max(options.tolerance), ..*options };
+    let mut weights = rank_roughly(curvature, pairs, &rough, start);
+    let mut history = Vec::new();
+    if start.is_empty() {
+        // Every ordered pair is short by one.
+        history.push(options.cost * pairs.ordered.len() as f64);
     }
+    history.extend(Problem::new(samples, curvature, pairs, options.cost).minimise(&mut weights, options));
     Ranked { weights, history }
+}
+
+/// The weights by the samples of a [`Curvature`] alone: good to a few digits, however small the tolerance.
+pub(super) fn rank_roughly(curvature: &Curvature, pairs: &Pairs, options: &RankOptions, start: &[f64]) -> Vec<f64> {
+    let mut weights = vec![0.0; curvature.columns()];
+    weights.iter_mut().zip(start).for_each(|(to, from)| *to = *from);
+    Problem::new(curvature, curvature, pairs, options.cost).minimise(&mut weights, options);
+    weights
 }
 
 /// Value at `weights`, for checks: the definition.
@@ -112,8 +99,17 @@ pub fn objective(samples: &Samples, pairs: &Pairs, cost: f64, weights: &[f64]) -
     )
 }
 
-struct Problem<'a> {
-    samples: &'a Samples<'a>,
+/// The two products of samples with vectors.
+pub(super) trait Rows {
+    /// `X w`.
+    fn product(&self, weights: &[f64], out: &mut Vec<f64>);
+    /// `out += X' r`.
+    fn add_transposed(&self, factors: &[f64], out: &mut [f64]);
+    fn rows(&self) -> usize;
+}
+
+struct Problem<'a, R: Rows> {
+    samples: &'a R,
     pairs: &'a Pairs,
     curvature: &'a Curvature,
     cost: f64,
@@ -122,12 +118,53 @@ struct Problem<'a> {
     short: Vec<f64>,
     /// One number a sample, filled by pairs.
     pull: Vec<f64>,
+    /// One number a pair: how short it is where a line search begins, and how much the search moves it apart.
+    line: [Vec<f64>; 2],
 }
 
-impl<'a> Problem<'a> {
-    fn new(samples: &'a Samples<'a>, curvature: &'a Curvature, pairs: &'a Pairs, cost: f64) -> Self {
+impl<'a, R: Rows> Problem<'a, R> {
+    fn new(samples: &'a R, curvature: &'a Curvature, pairs: &'a Pairs, cost: f64) -> Self {
         let pull = vec![0.0; samples.rows()];
-        Self { samples, pairs, curvature, cost, active: Vec::new(), short: Vec::new(), pull }
+        Self { samples, pairs, curvature, cost, active: vec![], short: vec![], pull, line: [vec![], vec![]] }
+    }
+
+    /// Newton steps from `weights`; the objective there and after every step.
+    fn minimise(&mut self, weights: &mut [f64], options: &RankOptions) -> Vec<f64> {
+        // A warm start begins with a small gradient: the tolerance is a share of what zero would have.
+        let least = options.tolerance * self.norm_at_zero();
+        let mut scores = vec![0.0; self.samples.rows()];
+        if weights.iter().any(|w| *w != 0.0) {
+            self.samples.product(weights, &mut scores);
+        }
+        let mut gradient = vec![0.0; weights.len()];
+        let mut objective = self.gradient(weights, &scores, &mut gradient);
+        let mut history = vec![objective];
+        let mut moved = Vec::new();
+        for _ in 0..options.max_steps {
+            let size = norm(&gradient);
+            if size <= least {
+                break;
+            }
+            // As far as Newton's method can use; near the end, right to it.
+            let left = least / size;
+            let useful = (options.tolerance / left).sqrt().min(0.1);
+            let step = self.newton_step(&gradient, if useful < 4.0 * left { 0.5 * left } else { useful });
+            self.samples.product(&step, &mut moved);
+            let length = self.line_search(weights, &scores, &step, &moved);
+            let before = (weights.to_vec(), objective);
+            add_scaled(weights, length, &step);
+            add_scaled(&mut scores, length, &moved);
+            objective = self.gradient(weights, &scores, &mut gradient);
+            // Where only rounding is left to gain.
+            if objective >= before.1 {
+                if objective > before.1 {
+                    weights.copy_from_slice(&before.0);
+                }
+                break;
+            }
+            history.push(objective);
+        }
+        history
     }
 
     /// Objective, gradient, and the violated pairs.
@@ -167,14 +204,15 @@ impl<'a> Problem<'a> {
         self.short.truncate(count);
     }
 
+    /// Size of the gradient at zero, where every ordered pair is short by one.
     fn norm_at_zero(&mut self) -> f64 {
-        let mut pull = vec![0.0; self.samples.rows()];
+        self.pull.fill(0.0);
         for [i, j] in &self.pairs.ordered {
-            pull[*i as usize] -= 2.0 * self.cost;
-            pull[*j as usize] += 2.0 * self.cost;
+            self.pull[*i as usize] -= 2.0 * self.cost;
+            self.pull[*j as usize] += 2.0 * self.cost;
         }
-        let mut gradient = vec![0.0; self.samples.columns()];
-        self.samples.add_transposed(&pull, &mut gradient);
+        let mut gradient = vec![0.0; self.curvature.columns()];
+        self.curvature.add_transposed(&self.pull, &mut gradient);
         norm(&gradient)
     }
 
@@ -191,18 +229,14 @@ impl<'a> Problem<'a> {
         out.iter_mut().zip(v).for_each(|(out, v)| *out = v + 2.0 * self.cost * *out);
     }
 
-    /// `-H^-1 gradient` by conjugate gradients, down to the share `rest` of the gradient. The preconditioner is the diagonal of
-    /// the Hessian that independent samples would have.
+    /// `-H^-1 gradient` by conjugate gradients, down to the share `rest` of the gradient. The diagonal as a preconditioner would
+    /// make the coordinates alike in curvature and the noise in them as important as the rest: half as many steps again.
     fn newton_step(&self, gradient: &[f64], rest: f64) -> Vec<f64> {
-        let pairs = (self.active.len() + self.pairs.similar.len()) as f64;
-        let scale = |g: f64, spread: f64| g / (1.0 + 4.0 * self.cost * pairs * spread);
-        let inverse: Vec<f64> = self.curvature.spread.iter().map(|s| scale(1.0, *s)).collect();
         let mut step = vec![0.0; gradient.len()];
         let mut residual: Vec<f64> = gradient.iter().map(|g| -g).collect();
-        let conditioned = |r: &[f64]| r.iter().zip(&inverse).map(|(r, i)| r * i).collect::<Vec<f64>>();
-        let mut direction = conditioned(&residual);
-        let mut energy = dot(&residual, &direction);
-        let wanted = rest * norm(gradient);
+        let mut direction = residual.clone();
+        let mut energy = dot(&residual, &residual);
+        let wanted = rest * rest * energy;
         let mut image = vec![0.0; gradient.len()];
         // In exact arithmetic it ends after as many steps as there are columns.
         for _ in 0..2 * gradient.len() {
@@ -213,21 +247,20 @@ impl<'a> Problem<'a> {
             }
             add_scaled(&mut step, length, &direction);
             add_scaled(&mut residual, -length, &image);
-            if norm(&residual) <= wanted {
+            let after = dot(&residual, &residual);
+            if after <= wanted {
                 break;
             }
-            let next = conditioned(&residual);
-            let after = dot(&residual, &next);
             let share = after / energy;
             energy = after;
-            direction.iter_mut().zip(&next).for_each(|(d, n)| *d = n + share * *d);
+            direction.iter_mut().zip(&residual).for_each(|(d, r)| *d = r + share * *d);
         }
         step
     }
 
     /// The length that minimises along `step`: a convex, piecewise quadratic function of one number; Newton on its slope,
     /// kept between a length at which it falls and one at which it rises.
-    fn line_search(&self, weights: &[f64], scores: &[f64], step: &[f64], moved: &[f64]) -> f64 {
+    fn line_search(&mut self, weights: &[f64], scores: &[f64], step: &[f64], moved: &[f64]) -> f64 {
         let (mut along, mut own) = (dot(weights, step), dot(step, step));
         let across = |values: &[f64], [i, j]: [u32; 2]| values[i as usize] - values[j as usize];
         // Similar pairs are quadratic along the step.
@@ -236,10 +269,13 @@ impl<'a> Problem<'a> {
             along += 2.0 * self.cost * across(scores, *pair) * apart;
             own += 2.0 * self.cost * apart * apart;
         }
-        let short: Vec<f64> = self.pairs.ordered.iter().map(|pair| 1.0 - across(scores, *pair)).collect();
-        let apart: Vec<f64> = self.pairs.ordered.iter().map(|pair| across(moved, *pair)).collect();
+        let [short, apart] = &mut self.line;
+        short.clear();
+        short.extend(self.pairs.ordered.iter().map(|pair| 1.0 - across(scores, *pair)));
+        apart.clear();
+        apart.extend(self.pairs.ordered.iter().map(|pair| across(moved, *pair)));
         let slope = |t: f64| {
-            let [first, second] = vectorised(Violated { short: &short, apart: &apart, at: t });
+            let [first, second] = vectorised(Violated { short, apart, at: t });
             (along + t * own - 2.0 * self.cost * first, own + 2.0 * self.cost * second)
         };
         let (mut low, mut high, mut t) = (0.0, f64::INFINITY, 1.0);
@@ -347,7 +383,7 @@ mod tests {
         problem.hessian(&v, &mut image);
         for (k, image) in image.iter().enumerate() {
             let numeric: f64 = columns.iter().zip(&v).map(|(column, v)| column[k] * v).sum();
-            assert!((numeric - image).abs() < 1e-4 * image.abs().max(1.0), "{k}: {numeric} {image}");
+            assert!((numeric - image).abs() < 1e-3 * image.abs().max(1.0), "{k}: {numeric} {image}");
         }
     }
 
