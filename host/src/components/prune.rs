@@ -53,17 +53,12 @@ impl Work for Losses<'_, '_> {
     fn call(self) -> Self::Output {
         let Self(fit) = self;
         let mut cholesky = Cholesky::default();
-        let mut unit = Vec::new();
         let mut losses = Vec::new();
         for (joint, movers) in fit.movers().iter().enumerate() {
             cholesky.factorise(movers.len(), DAMPING, |a, b| fit.inner[(movers[a], movers[b])]);
-            for (a, k) in movers.iter().enumerate() {
-                unit.clear();
-                unit.resize(movers.len(), 0.0);
-                unit[a] = 1.0;
-                cholesky.forward(&mut unit);
+            for (k, share) in movers.iter().zip(cholesky.inverse_diagonal()) {
                 let group = &column(&fit.components, *k)[3 * joint..][..3];
-                losses.push((dot(group, group) / dot(&unit, &unit).max(f64::MIN_POSITIVE), [*k, joint]));
+                losses.push((dot(group, group) / share.max(f64::MIN_POSITIVE), [*k, joint]));
             }
         }
         losses

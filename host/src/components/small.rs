@@ -1,13 +1,22 @@
 //! Cholesky factorisation of small matrices in one workspace: thousands of joints' systems a second, without allocation.
 //! For use inside [`Work`](crate::vector::Work).
 
-use crate::vector::dot;
+/// Columns begin at multiples of this, and what is above the diagonal is zero: whole vectors without a rest.
+const LANES: usize = 8;
 
-/// `A = L L'`, row-major, of a size that changes from use to use.
+/// `A = L L'`, of a size that changes from use to use.
 #[derive(Debug, Default)]
 pub(super) struct Cholesky {
     size: usize,
+    /// Rows from one column to the next.
+    stride: usize,
+    /// `L`, column-major.
     lower: Vec<f64>,
+    /// One over the diagonal of `L`.
+    inverse: Vec<f64>,
+    /// `L^-1`, row-major, and the sums of its columns' squares.
+    rows: Vec<f64>,
+    squares: Vec<f64>,
 }
 
 impl Cholesky {
@@ -16,28 +25,41 @@ impl Cholesky {
     #[inline(always)]
     pub fn factorise(&mut self, size: usize, damping: f64, entry: impl Fn(usize, usize) -> f64) {
         self.size = size;
+        self.stride = size.next_multiple_of(LANES);
         self.lower.clear();
-        self.lower.resize(size * size, 0.0);
+        self.lower.resize(size * self.stride, 0.0);
+        self.inverse.clear();
         let trace: f64 = (0..size).map(|k| entry(k, k)).sum();
         let added = damping * trace / size.max(1) as f64 + f64::MIN_POSITIVE;
-        for row in 0..size {
-            let (above, own) = self.lower.split_at_mut(row * size);
-            for column in 0..row {
-                let other = &above[column * size..][..size];
-                own[column] = (entry(row, column) - dot(&own[..column], &other[..column])) / other[column];
+        for column in 0..size {
+            let (before, own) = self.lower.split_at_mut(column * self.stride);
+            let own = &mut own[..self.stride];
+            for (row, to) in own[..size].iter_mut().enumerate().skip(column) {
+                *to = entry(row, column);
             }
-            let pivot = entry(row, row) + added - dot(&own[..row], &own[..row]);
+            own[column] += added;
+            // From the vector that holds the diagonal.
+            let from = column / LANES * LANES;
+            for other in before.chunks_exact(self.stride) {
+                subtract(&mut own[from..], other[column], &other[from..]);
+            }
             // The damping keeps it positive; what rounding leaves of a row without energy must not divide by zero.
-            own[row] = pivot.max(added).sqrt();
+            let pivot = own[column].max(added).sqrt();
+            own[..column].fill(0.0);
+            own[column] = pivot;
+            let inverse = 1.0 / pivot;
+            own[column + 1..].iter_mut().for_each(|x| *x *= inverse);
+            self.inverse.push(inverse);
         }
     }
 
     /// `x <- L^-1 x`; `x'x` is then the quadratic form of `A^-1`.
     #[inline(always)]
     pub fn forward(&self, x: &mut [f64]) {
-        for row in 0..self.size {
-            let lower = &self.lower[row * self.size..][..=row];
-            x[row] = (x[row] - dot(&lower[..row], &x[..row])) / lower[row];
+        for (row, (column, inverse)) in self.lower.chunks_exact(self.stride.max(1)).zip(&self.inverse).enumerate() {
+            x[row] *= inverse;
+            let solved = x[row];
+            x[row + 1..].iter_mut().zip(&column[row + 1..]).for_each(|(x, lower)| *x -= solved * lower);
         }
     }
 
@@ -46,18 +68,49 @@ impl Cholesky {
     pub fn solve(&self, x: &mut [f64]) {
         self.forward(x);
         for row in (0..self.size).rev() {
-            x[row] /= self.lower[row * self.size + row];
-            let solved = x[row];
-            for (x, lower) in x[..row].iter_mut().zip(&self.lower[row * self.size..]) {
-                *x -= lower * solved;
-            }
+            let column = &self.lower[row * self.stride..][..self.size];
+            let sum: f64 = column[row + 1..].iter().zip(&x[row + 1..]).map(|(lower, x)| lower * x).sum();
+            x[row] = (x[row] - sum) * self.inverse[row];
         }
+    }
+
+    /// The diagonal of `A^-1`. Cost: `size^3 / 6` multiply-adds.
+    #[inline(always)]
+    pub fn inverse_diagonal(&mut self) -> &[f64] {
+        let Self { size, stride, lower, inverse, rows, squares } = self;
+        rows.clear();
+        rows.resize(*size * *stride, 0.0);
+        squares.clear();
+        squares.resize(*stride, 0.0);
+        for row in 0..*size {
+            let (before, own) = rows.split_at_mut(row * *stride);
+            // Up to the vector that holds the diagonal.
+            let own = &mut own[..(row + 1).next_multiple_of(LANES)];
+            for (k, other) in before.chunks_exact(*stride).enumerate() {
+                let until = (k + 1).next_multiple_of(LANES);
+                subtract(&mut own[..until], lower[k * *stride + row], &other[..until]);
+            }
+            own[row] = 1.0;
+            let factor = inverse[row];
+            own.iter_mut().for_each(|x| *x *= factor);
+            squares.iter_mut().zip(own.iter()).for_each(|(sum, x)| *sum += x * x);
+        }
+        &squares[..*size]
+    }
+}
+
+/// `to -= factor from`, in whole vectors.
+#[inline(always)]
+fn subtract(to: &mut [f64], factor: f64, from: &[f64]) {
+    for (to, from) in to.as_chunks_mut::<LANES>().0.iter_mut().zip(from.as_chunks::<LANES>().0) {
+        to.iter_mut().zip(from).for_each(|(to, from)| *to -= factor * from);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::vector::dot;
 
     #[test]
     fn solves_what_it_factorised() {
@@ -76,6 +129,23 @@ mod tests {
         cholesky.solve(&mut inverse);
         cholesky.forward(&mut unit);
         assert!((dot(&unit, &unit) - inverse[1]).abs() < 1e-15, "entry (1, 1) of the inverse");
+        assert!((cholesky.inverse_diagonal()[1] - inverse[1]).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_diagonal_of_the_inverse_at_any_size() {
+        let mut cholesky = Cholesky::default();
+        for size in [1, 7, 8, 9, 25] {
+            cholesky.factorise(size, 0.0, |r, c| 1.0 / (1.0 + (r - c) as f64) + if r == c { 1.0 } else { 0.0 });
+            let diagonal = cholesky.inverse_diagonal().to_vec();
+            assert_eq!(diagonal.len(), size);
+            for (at, entry) in diagonal.iter().enumerate() {
+                let mut unit = vec![0.0; size];
+                unit[at] = 1.0;
+                cholesky.solve(&mut unit);
+                assert!((unit[at] - entry).abs() < 1e-14, "{size} {at}: {} {entry}", unit[at]);
+            }
+        }
     }
 
     #[test]

@@ -28,6 +28,7 @@ pub struct Choice {
 /// in turn.
 pub fn choose_cost(samples: &Samples, pairs: &Pairs, takes: &[usize], options: &RankOptions) -> Choice {
     let unit = unit(samples, pairs);
+    let pairs = &pairs.by_first();
     let curvature = Curvature::new(samples);
     let costs = TRIED.map(|c| c * unit);
     let mut right = [0.0; TRIED.len()];

@@ -7,11 +7,11 @@ use crate::vector::{Work, vectorised};
 
 /// Lanes in which products are summed; rows are filled up to a multiple of them by zeros.
 const LANES: usize = 32;
-/// The largest distance of a column from its mean becomes this.
+/// The ends of a column's range become this and its negative.
 const LARGEST: f64 = 32767.0;
 
-/// Samples less their mean, in steps of their own for every column: of `n` samples the farthest is at most `sqrt(n)` deviations
-/// away, so that a deviation is many steps.
+/// Samples in steps of their own for every column, from the middle of its range: of `n` samples none is farther than `sqrt(n)`
+/// deviations from the mean, so that a deviation is many steps.
 pub struct Curvature {
     /// `[rows x width]`, `width` a multiple of [`LANES`].
     values: Vec<i16>,
@@ -25,25 +25,14 @@ impl Curvature {
     pub fn new(samples: &Samples) -> Self {
         let columns = samples.columns();
         let width = columns.next_multiple_of(LANES);
-        let mean = samples.mean();
-        let mut farthest = vec![0.0f64; columns];
-        vectorised(|| {
-            for row in samples.iter() {
-                for ((far, x), m) in farthest.iter_mut().zip(row).zip(&mean) {
-                    *far = far.max((x - m).abs());
-                }
-            }
-        });
-        let steps: Vec<f64> = farthest.iter().map(|far| far / LARGEST).collect();
+        let mut ends = [vec![f64::INFINITY; columns], vec![f64::NEG_INFINITY; columns]];
+        vectorised(Ends { samples, ends: &mut ends });
+        let [least, most] = ends;
+        let middle: Vec<f64> = least.iter().zip(&most).map(|(a, b)| 0.5 * (a + b)).collect();
+        let steps: Vec<f64> = least.iter().zip(&most).map(|(a, b)| 0.5 * (b - a) / LARGEST).collect();
         let inverse: Vec<f64> = steps.iter().map(|step| if *step > 0.0 { 1.0 / step } else { 0.0 }).collect();
         let mut values = vec![0; samples.rows() * width];
-        for (row, to) in samples.iter().zip(values.chunks_exact_mut(width)) {
-            vectorised(|| {
-                for (((to, x), m), inverse) in to.iter_mut().zip(row).zip(&mean).zip(&inverse) {
-                    *to = ((x - m) * inverse).round_ties_even() as i16;
-                }
-            });
-        }
+        vectorised(Round { samples, middle: &middle, inverse: &inverse, width, values: &mut values });
         Self { values, width, steps }
     }
 
@@ -95,6 +84,48 @@ impl Rows for Curvature {
     }
 }
 
+/// The least and the largest value of every column.
+struct Ends<'a, 'b> {
+    samples: &'a Samples<'b>,
+    ends: &'a mut [Vec<f64>; 2],
+}
+
+impl Work for Ends<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let [least, most] = self.ends;
+        for row in self.samples.iter() {
+            for ((least, most), x) in least.iter_mut().zip(most.iter_mut()).zip(row) {
+                *least = if *x < *least { *x } else { *least };
+                *most = if *x > *most { *x } else { *most };
+            }
+        }
+    }
+}
+
+struct Round<'a, 'b> {
+    samples: &'a Samples<'b>,
+    middle: &'a [f64],
+    inverse: &'a [f64],
+    width: usize,
+    values: &'a mut [i16],
+}
+
+impl Work for Round<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        for (row, to) in self.samples.iter().zip(self.values.chunks_exact_mut(self.width)) {
+            for (((to, x), middle), inverse) in to.iter_mut().zip(row).zip(self.middle).zip(self.inverse) {
+                *to = ((x - middle) * inverse).round_ties_even() as i16;
+            }
+        }
+    }
+}
+
 struct Product<'a> {
     values: &'a [i16],
     weights: &'a [f32],
@@ -114,7 +145,15 @@ impl Work for Product<'_> {
                     *lane += f32::from(*x) * w;
                 }
             }
-            *out = lanes.iter().sum::<f32>();
+            // Halves on halves: as vectors, not one after the other. The box keeps this from choosing the order of the lanes above.
+            let mut lanes = std::hint::black_box(lanes);
+            let mut left = LANES;
+            while left > 1 {
+                left /= 2;
+                let (low, high) = lanes.split_at_mut(left);
+                low.iter_mut().zip(high).for_each(|(low, high)| *low += *high);
+            }
+            *out = lanes[0];
         }
     }
 }
