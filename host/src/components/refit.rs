@@ -145,13 +145,14 @@ impl Work for FitComponents<'_, '_> {
         let mut right = Vec::new();
         for (joint, movers) in movers.iter().enumerate() {
             cholesky.factorise(movers.len(), DAMPING, |a, b| fit.inner[(movers[a], movers[b])]);
-            for channel in 3 * joint..3 * joint + 3 {
-                right.clear();
-                right.extend(movers.iter().map(|k| fit.cross[(channel, *k)]));
-                cholesky.solve(&mut right);
-                for (k, value) in movers.iter().zip(&right) {
-                    column_mut(&mut fit.components, *k)[channel] = *value;
-                }
+            right.clear();
+            right.extend(movers.iter().map(|k| {
+                let [x, y, z] = [0, 1, 2].map(|axis| fit.cross[(3 * joint + axis, *k)]);
+                [x, y, z, 0.0]
+            }));
+            cholesky.solve(&mut right);
+            for (k, value) in movers.iter().zip(&right) {
+                column_mut(&mut fit.components, *k)[3 * joint..][..3].copy_from_slice(&value[..3]);
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Cholesky factorisation of small matrices in one workspace: thousands of joints' systems a second, without allocation.
 //! For use inside [`Work`](crate::vector::Work).
 
-/// Columns begin at multiples of this, and what is above the diagonal is zero: whole vectors without a rest.
+/// Columns begin at multiples of this: whole vectors without a rest. What is above the diagonal is never read.
 const LANES: usize = 8;
 
 /// `A = L L'`, of a size that changes from use to use.
@@ -45,7 +45,6 @@ impl Cholesky {
             }
             // The damping keeps it positive; what rounding leaves of a row without energy must not divide by zero.
             let pivot = own[column].max(added).sqrt();
-            own[..column].fill(0.0);
             own[column] = pivot;
             let inverse = 1.0 / pivot;
             own[column + 1..].iter_mut().for_each(|x| *x *= inverse);
@@ -63,14 +62,23 @@ impl Cholesky {
         }
     }
 
-    /// `x <- A^-1 x`.
+    /// `X <- A^-1 X` for four right sides: a row of `X` is one vector.
     #[inline(always)]
-    pub fn solve(&self, x: &mut [f64]) {
-        self.forward(x);
-        for row in (0..self.size).rev() {
-            let column = &self.lower[row * self.stride..][..self.size];
-            let sum: f64 = column[row + 1..].iter().zip(&x[row + 1..]).map(|(lower, x)| lower * x).sum();
-            x[row] = (x[row] - sum) * self.inverse[row];
+    pub fn solve(&self, x: &mut [[f64; 4]]) {
+        let Self { size, stride, lower, inverse, .. } = self;
+        for row in 0..*size {
+            let solved = x[row].map(|x| x * inverse[row]);
+            x[row] = solved;
+            for (x, lower) in x[row + 1..*size].iter_mut().zip(&lower[row * stride + row + 1..]) {
+                (0..4).for_each(|side| x[side] -= lower * solved[side]);
+            }
+        }
+        for row in (0..*size).rev() {
+            let solved = x[row].map(|x| x * inverse[row]);
+            x[row] = solved;
+            for (x, lower) in x[..row].iter_mut().zip(lower[row..].iter().step_by(*stride)) {
+                (0..4).for_each(|side| x[side] -= lower * solved[side]);
+            }
         }
     }
 
@@ -112,6 +120,11 @@ mod tests {
     use super::*;
     use crate::vector::dot;
 
+    /// Four times the same.
+    fn four(x: &[f64]) -> Vec<[f64; 4]> {
+        x.iter().map(|x| [*x; 4]).collect()
+    }
+
     #[test]
     fn solves_what_it_factorised() {
         let matrix = [[4.0, 1.0, -0.5], [1.0, 3.0, 0.2], [-0.5, 0.2, 2.0]];
@@ -119,17 +132,16 @@ mod tests {
         // A larger one first: nothing of it may stay behind.
         cholesky.factorise(5, 0.0, |r, c| if r == c { 9.0 } else { 1.0 });
         cholesky.factorise(3, 0.0, |r, c| matrix[r][c]);
-        let mut x = [1.0, -2.0, 3.0];
+        let mut x = four(&[1.0, -2.0, 3.0]);
         cholesky.solve(&mut x);
         for (row, right) in matrix.iter().zip([1.0, -2.0, 3.0]) {
-            assert!((dot(row, &x) - right).abs() < 1e-14);
+            assert!((0..4).all(|side| (dot(row, &[0, 1, 2].map(|k| x[k][side])) - right).abs() < 1e-14));
         }
         let mut unit = [0.0, 1.0, 0.0];
-        let mut inverse = unit;
+        let mut inverse = four(&unit);
         cholesky.solve(&mut inverse);
         cholesky.forward(&mut unit);
-        assert!((dot(&unit, &unit) - inverse[1]).abs() < 1e-15, "entry (1, 1) of the inverse");
-        assert!((cholesky.inverse_diagonal()[1] - inverse[1]).abs() < 1e-15);
+        assert!((dot(&unit, &unit) - inverse[1][0]).abs() < 1e-15, "entry (1, 1) of the inverse");
     }
 
     #[test]
@@ -140,10 +152,10 @@ mod tests {
             let diagonal = cholesky.inverse_diagonal().to_vec();
             assert_eq!(diagonal.len(), size);
             for (at, entry) in diagonal.iter().enumerate() {
-                let mut unit = vec![0.0; size];
-                unit[at] = 1.0;
+                let mut unit = vec![[0.0; 4]; size];
+                unit[at] = [1.0; 4];
                 cholesky.solve(&mut unit);
-                assert!((unit[at] - entry).abs() < 1e-14, "{size} {at}: {} {entry}", unit[at]);
+                assert!((unit[at][3] - entry).abs() < 1e-14, "{size} {at}: {} {entry}", unit[at][3]);
             }
         }
     }
@@ -152,8 +164,8 @@ mod tests {
     fn alike_and_empty_rows_stay_finite() {
         let mut cholesky = Cholesky::default();
         cholesky.factorise(3, 1e-5, |r, c| if r == 2 || c == 2 { 0.0 } else { 1.0 });
-        let mut x = [1.0, 1.0, 0.0];
+        let mut x = four(&[1.0, 1.0, 0.0]);
         cholesky.solve(&mut x);
-        assert!(x.iter().all(|x| x.is_finite()) && (x[0] + x[1] - 1.0).abs() < 1e-3, "{x:?}");
+        assert!(x.as_flattened().iter().all(|x| x.is_finite()) && (x[0][0] + x[1][0] - 1.0).abs() < 1e-3, "{x:?}");
     }
 }
