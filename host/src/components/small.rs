@@ -70,14 +70,14 @@ impl Cholesky {
             let solved = x[row].map(|x| x * inverse[row]);
             x[row] = solved;
             for (x, lower) in x[row + 1..*size].iter_mut().zip(&lower[row * stride + row + 1..]) {
-                (0..4).for_each(|side| x[side] -= lower * solved[side]);
+                *x = less(*x, *lower, solved);
             }
         }
         for row in (0..*size).rev() {
             let solved = x[row].map(|x| x * inverse[row]);
             x[row] = solved;
             for (x, lower) in x[..row].iter_mut().zip(lower[row..].iter().step_by(*stride)) {
-                (0..4).for_each(|side| x[side] -= lower * solved[side]);
+                *x = less(*x, *lower, solved);
             }
         }
     }
@@ -111,8 +111,14 @@ impl Cholesky {
 #[inline(always)]
 fn subtract(to: &mut [f64], factor: f64, from: &[f64]) {
     for (to, from) in to.as_chunks_mut::<LANES>().0.iter_mut().zip(from.as_chunks::<LANES>().0) {
-        to.iter_mut().zip(from).for_each(|(to, from)| *to -= factor * from);
+        *to = less(*to, factor, *from);
     }
+}
+
+/// `to - factor from`. By value: a vector is read, changed and written as one.
+#[inline(always)]
+fn less<const N: usize>(to: [f64; N], factor: f64, from: [f64; N]) -> [f64; N] {
+    std::array::from_fn(|lane| to[lane] - factor * from[lane])
 }
 
 #[cfg(test)]
