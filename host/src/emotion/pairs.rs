@@ -127,6 +127,13 @@ mod tests {
     use rand::SeedableRng;
 
     #[test]
+    fn pairs_by_first_keep_their_order() {
+        let pairs = Pairs { ordered: vec![[3, 1], [0, 2], [3, 0], [1, 4], [0, 1]], similar: vec![] };
+        assert_eq!(pairs.by_first().ordered, [[0, 2], [0, 1], [1, 4], [3, 1], [3, 0]]);
+        assert_eq!(Pairs::default().by_first(), Pairs::default());
+    }
+
+    #[test]
     fn levels_make_pairs_within_groups() {
         let levels = [Some(1.0), Some(0.5), None, Some(0.5), Some(0.0)];
         let pairs = Pairs::of_levels(&levels, &[0, 0, 0, 0, 1], 1e-6);
