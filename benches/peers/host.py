@@ -219,7 +219,7 @@ def autoencoder():
 
 def growth():
     head("How cost grows", "job", "1x, s", "4x, s", "16x, s", "exponent", "1x, MiB", "4x, MiB", "16x, MiB", "exponent")
-    for job in ("align", "identify", "autoencoder", "rank", "regress", "pca"):
+    for job in ("align", "identify", "autoencoder", "rank", "regress", "pca", "sparse", "learn"):
         # 16 times as many frames than a quarter of the table's job.
         found = [ours(job, scale)[1] for scale in (0.25, 1.0, 4.0)]
         cells = []

@@ -137,7 +137,7 @@ fn factor(folder: &Path) -> Fallible<()> {
         let motion: &Mat<f64> = motions.get(index.parse::<usize>()?).ok_or("no such motion")?;
         let (m, count, density) = (motion.as_ref(), count.parse()?, density.parse()?);
         let sparsity = Sparsity { density: Some(density), ..Sparsity::default() };
-        let seconds = seconds_a_call(0.5, || drop(sparse(m, count, &sparsity)));
+        let seconds = seconds_a_call(0.2, || drop(sparse(m, count, &sparsity)));
         let found = sparse(m, count, &sparsity).factors;
         for (method, factors, seconds) in
             [("kinesic", &found, seconds), ("pca", &strongest(m, count, density), f64::NAN)]
@@ -164,7 +164,7 @@ fn penalty() -> Fallible<()> {
             for motion in &motions {
                 let m = motion.values.as_ref();
                 let sparsity = Sparsity { penalty, density: None, ..Sparsity::default() };
-                let time = seconds_a_call(0.5, || drop(sparse(m, count, &sparsity)));
+                let time = seconds_a_call(0.2, || drop(sparse(m, count, &sparsity)));
                 let found = sparse(m, count, &sparsity);
                 let density = found.factors.density();
                 let row = [
@@ -358,7 +358,7 @@ fn learning(folder: &Path) -> Fallible<()> {
     write_matrix(&folder.join("bones.csv"), table.as_ref())?;
     let fixed = Optimiser { max_steps: 500, threshold: -1.0, ..Optimiser::default() };
     let mut last = f64::NAN;
-    let seconds = seconds_a_call(0.5, || {
+    let seconds = seconds_a_call(0.2, || {
         let learned = learn(&objective, start.clone(), &fixed);
         assert_eq!(learned.history.len(), 501);
         last = learned.history[500];

@@ -3,7 +3,7 @@
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatRef, Par};
 
-use crate::vector::vectorised;
+use crate::vector::{Work, dot, vectorised};
 
 /// `M ~ W C`. Column `k` of `weights` is the time course of component `k`, at most one in root mean square; column `k` of
 /// `components` holds its `[3 joints]` directions, in deviations.
@@ -146,7 +146,7 @@ fn update_weights(weights: &mut Mat<f64>, cross: &Mat<f64>, outer: &Mat<f64>, bo
         // A component without joints leaves its weights free: keep them, so that it may come back.
         if own > 0.0 {
             rest(weights, cross, outer, k, &mut gradient);
-            let squares = gradient.iter().map(|g| g * g).sum::<f64>() / (own * own);
+            let squares = vectorised(|| dot(&gradient, &gradient)) / (own * own);
             let shrink = if squares > bound { (bound / squares).sqrt() } else { 1.0 } / own;
             column_mut(weights, k).iter_mut().zip(&gradient).for_each(|(w, g)| *w = shrink * g);
         }
@@ -156,11 +156,37 @@ fn update_weights(weights: &mut Mat<f64>, cross: &Mat<f64>, outer: &Mat<f64>, bo
 /// `cross_k - sum over j != k of factor_j gram_jk`.
 fn rest(factor: &Mat<f64>, cross: &Mat<f64>, gram: &Mat<f64>, k: usize, out: &mut [f64]) {
     out.copy_from_slice(column(cross, k));
-    vectorised(|| {
-        for (j, weight) in column(gram, k).iter().enumerate().filter(|(j, _)| *j != k) {
+    vectorised(Rest { factor, gram: column(gram, k), k, out });
+}
+
+struct Rest<'a> {
+    factor: &'a Mat<f64>,
+    gram: &'a [f64],
+    k: usize,
+    out: &'a mut [f64],
+}
+
+impl Work for Rest<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { factor, gram, k, out } = self;
+        let weight = |j: usize| if j == k { 0.0 } else { gram[j] };
+        let (fours, last) = gram.as_chunks::<4>();
+        // Four columns at once, so that a sum is loaded and stored once for four.
+        for four in 0..fours.len() {
+            let [e, f, g, h] = [0, 1, 2, 3].map(|at| weight(4 * four + at));
+            let [a, b, c, d] = [0, 1, 2, 3].map(|at| column(factor, 4 * four + at));
+            for ((((out, a), b), c), d) in out.iter_mut().zip(a).zip(b).zip(c).zip(d) {
+                *out -= (e * a + f * b) + (g * c + h * d);
+            }
+        }
+        for j in gram.len() - last.len()..gram.len() {
+            let weight = weight(j);
             out.iter_mut().zip(column(factor, j)).for_each(|(out, x)| *out -= weight * x);
         }
-    });
+    }
 }
 
 /// `a b` on one thread: the same bits on every run.
@@ -171,7 +197,7 @@ pub(super) fn product(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Mat<f64> {
 }
 
 fn inner_product(a: &Mat<f64>, b: &Mat<f64>) -> f64 {
-    (0..a.ncols()).map(|k| column(a, k).iter().zip(column(b, k)).map(|(a, b)| a * b).sum::<f64>()).sum()
+    vectorised(|| (0..a.ncols()).map(|k| dot(column(a, k), column(b, k))).sum())
 }
 
 /// Column `k`; a [`Mat`] keeps its columns in one piece.

@@ -4,7 +4,7 @@ use faer::{Mat, MatRef};
 use nalgebra::{Matrix3, SymmetricEigen};
 
 use super::factor::{Factors, column_mut};
-use crate::vector::dot;
+use crate::vector::{Work, dot, vectorised};
 
 /// `count` components, from the three main directions of every joint, joined pair by pair where it costs least.
 ///
@@ -14,9 +14,11 @@ use crate::vector::dot;
 pub fn gather(motion: MatRef<'_, f64>, count: usize) -> Factors {
     let channels = motion.ncols();
     let mut parts = single(motion);
-    let mut losses: Vec<Vec<f64>> =
-        (0..parts.len()).map(|a| (0..a).map(|b| loss(&parts[a], &parts[b])).collect()).collect();
     let mut alive: Vec<bool> = vec![true; parts.len()];
+    let mut losses: Vec<Vec<f64>> = (0..parts.len()).map(|a| vec![0.0; a]).collect();
+    for (a, losses) in losses.iter_mut().enumerate() {
+        vectorised(Losses { part: &parts[a], others: &parts[..a], alive: &alive, losses });
+    }
     for _ in count..parts.len() {
         let mut best: Option<(f64, usize, usize)> = None;
         for a in (0..parts.len()).filter(|a| alive[*a]) {
@@ -29,8 +31,10 @@ pub fn gather(motion: MatRef<'_, f64>, count: usize) -> Factors {
         let Some((_, a, b)) = best else { break };
         parts[b] = join(&parts[a], &parts[b]);
         alive[a] = false;
+        let mut joined = vec![0.0; parts.len()];
+        vectorised(Losses { part: &parts[b], others: &parts, alive: &alive, losses: &mut joined });
         for other in (0..parts.len()).filter(|other| alive[*other] && *other != b) {
-            losses[b.max(other)][b.min(other)] = loss(&parts[b], &parts[other]);
+            losses[b.max(other)][b.min(other)] = joined[other];
         }
     }
     let kept: Vec<&Part> = parts.iter().zip(&alive).filter(|(_, alive)| **alive).map(|(part, _)| part).collect();
@@ -73,7 +77,29 @@ fn single(motion: MatRef<'_, f64>) -> Vec<Part> {
     parts
 }
 
+/// What a part would lose by being joined with each of the others.
+struct Losses<'a> {
+    part: &'a Part,
+    others: &'a [Part],
+    alive: &'a [bool],
+    losses: &'a mut [f64],
+}
+
+impl Work for Losses<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        for ((to, other), alive) in self.losses.iter_mut().zip(self.others).zip(self.alive) {
+            if *alive {
+                *to = loss(self.part, other);
+            }
+        }
+    }
+}
+
 /// Squared error of one time course for both.
+#[inline(always)]
 fn loss(a: &Part, b: &Part) -> f64 {
     let (r, overlap) = (dot(&a.weights, &b.weights), dot(&a.component, &b.component));
     // Singular values of w_a c_a' + w_b c_b': the eigenvalues of (W'W)(C C').

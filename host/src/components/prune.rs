@@ -5,7 +5,7 @@ use faer::MatRef;
 use super::factor::{Factors, column, column_mut, product};
 use super::refit::{Fit, Scatter};
 use super::small::Cholesky;
-use crate::vector::dot;
+use crate::vector::{Work, dot, vectorised};
 
 /// Groups that leave at once, as a share of those that are left.
 const SHARE: f64 = 0.08;
@@ -29,7 +29,7 @@ pub fn prune(motion: MatRef<'_, f64>, factors: &Factors, density: f64) -> Factor
 /// Prunes to `wanted` joint groups.
 pub(super) fn thin(fit: &mut Fit, wanted: usize) {
     loop {
-        let mut losses = losses(fit);
+        let mut losses = vectorised(Losses(fit));
         let surplus = losses.len().saturating_sub(wanted);
         if surplus == 0 {
             return;
@@ -44,22 +44,25 @@ pub(super) fn thin(fit: &mut Fit, wanted: usize) {
 }
 
 /// What every joint group that is not zero is worth, and which it is: `[component, joint]`.
-fn losses(fit: &Fit) -> Vec<(f64, [usize; 2])> {
-    let mut cholesky = Cholesky::default();
-    let mut unit = Vec::new();
-    let mut losses = Vec::new();
-    for (joint, movers) in fit.movers().iter().enumerate() {
-        cholesky.factorise(movers.len(), DAMPING, |a, b| fit.inner[(movers[a], movers[b])]);
-        for (a, k) in movers.iter().enumerate() {
-            unit.clear();
-            unit.resize(movers.len(), 0.0);
-            unit[a] = 1.0;
-            cholesky.forward(&mut unit);
-            let group = &column(&fit.components, *k)[3 * joint..][..3];
-            losses.push((dot(group, group) / dot(&unit, &unit).max(f64::MIN_POSITIVE), [*k, joint]));
+struct Losses<'f, 'a>(&'f Fit<'a>);
+
+impl Work for Losses<'_, '_> {
+    type Output = Vec<(f64, [usize; 2])>;
+
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        let Self(fit) = self;
+        let mut cholesky = Cholesky::default();
+        let mut losses = Vec::new();
+        for (joint, movers) in fit.movers().iter().enumerate() {
+            cholesky.factorise(movers.len(), DAMPING, |a, b| fit.inner[(movers[a], movers[b])]);
+            for (k, share) in movers.iter().zip(cholesky.inverse_diagonal()) {
+                let group = &column(&fit.components, *k)[3 * joint..][..3];
+                losses.push((dot(group, group) / share.max(f64::MIN_POSITIVE), [*k, joint]));
+            }
         }
+        losses
     }
-    losses
 }
 
 /// Moves joint groups to where they are worth more, at the same density: grow by a share, fit, prune back; as long as the

@@ -5,6 +5,7 @@ use faer::{Mat, MatRef, Side};
 
 use super::factor::{Factors, column, column_mut, groups, product};
 use super::small::Cholesky;
+use crate::vector::{Work, vectorised};
 
 /// Rounds of least squares for `C` and for `W` in turn.
 pub(super) const ROUNDS: usize = 30;
@@ -112,21 +113,8 @@ impl<'a> Fit<'a> {
         factors
     }
 
-    /// For every joint: least squares on the weight columns of the components that move it.
     fn fit_components(&mut self, movers: &[Vec<usize>]) {
-        let mut cholesky = Cholesky::default();
-        let mut right = Vec::new();
-        for (joint, movers) in movers.iter().enumerate() {
-            cholesky.factorise(movers.len(), DAMPING, |a, b| self.inner[(movers[a], movers[b])]);
-            for channel in 3 * joint..3 * joint + 3 {
-                right.clear();
-                right.extend(movers.iter().map(|k| self.cross[(channel, *k)]));
-                cholesky.solve(&mut right);
-                for (k, value) in movers.iter().zip(&right) {
-                    column_mut(&mut self.components, *k)[channel] = *value;
-                }
-            }
-        }
+        vectorised(FitComponents { fit: self, movers });
     }
 
     /// `P = C' (C C')^-1`, and what follows from it; returns the squared error.
@@ -138,6 +126,35 @@ impl<'a> Fit<'a> {
             self.inner = product(self.projection.transpose(), self.cross.as_ref());
         }
         (self.scatter.total - inner_product(&self.cross, &self.components)).max(0.0)
+    }
+}
+
+/// For every joint: least squares on the weight columns of the components that move it.
+struct FitComponents<'f, 'a> {
+    fit: &'f mut Fit<'a>,
+    movers: &'f [Vec<usize>],
+}
+
+impl Work for FitComponents<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { fit, movers } = self;
+        let mut cholesky = Cholesky::default();
+        let mut right = Vec::new();
+        for (joint, movers) in movers.iter().enumerate() {
+            cholesky.factorise(movers.len(), DAMPING, |a, b| fit.inner[(movers[a], movers[b])]);
+            right.clear();
+            right.extend(movers.iter().map(|k| {
+                let [x, y, z] = [0, 1, 2].map(|axis| fit.cross[(3 * joint + axis, *k)]);
+                [x, y, z, 0.0]
+            }));
+            cholesky.solve(&mut right);
+            for (k, value) in movers.iter().zip(&right) {
+                column_mut(&mut fit.components, *k)[3 * joint..][..3].copy_from_slice(&value[..3]);
+            }
+        }
     }
 }
 

@@ -7,6 +7,9 @@ use super::gather::gather;
 use super::prune::{exchange, thin};
 use super::refit::{Fit, ROUNDS, Scatter};
 
+/// Rounds of least squares on a support that pruning will change: more cost time and lower no error in the end.
+const BEFORE_PRUNING: usize = 8;
+
 /// How sparse, and how much work.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sparsity {
@@ -45,7 +48,7 @@ pub fn sparse(motion: MatRef<'_, f64>, count: usize, sparsity: &Sparsity) -> Spa
     let (factors, history) = descend(motion, gather(motion, count), sparsity.penalty, &sparsity.descent);
     let scatter = Scatter::new(motion);
     let mut fit = Fit::new(&scatter, &factors.components);
-    fit.rounds(ROUNDS);
+    fit.rounds(if sparsity.density.is_some() { BEFORE_PRUNING } else { ROUNDS });
     if let Some(density) = sparsity.density {
         let groups = factors.count() * motion.ncols() / 3;
         thin(&mut fit, (density * groups as f64).round() as usize);

@@ -2,7 +2,7 @@
 
 use super::curvature::Curvature;
 use super::pairs::{Pairs, pair_accuracy};
-use super::rank::{RankOptions, rank_with};
+use super::rank::{RankOptions, rank_roughly};
 use super::samples::Samples;
 
 /// Costs that are tried, times the number of pairs and the mean square of a sample: so that the numbers mean the same for any
@@ -28,6 +28,7 @@ pub struct Choice {
 /// in turn.
 pub fn choose_cost(samples: &Samples, pairs: &Pairs, takes: &[usize], options: &RankOptions) -> Choice {
     let unit = unit(samples, pairs);
+    let pairs = &pairs.by_first();
     let curvature = Curvature::new(samples);
     let costs = TRIED.map(|c| c * unit);
     let mut right = [0.0; TRIED.len()];
@@ -41,17 +42,13 @@ pub fn choose_cost(samples: &Samples, pairs: &Pairs, takes: &[usize], options: &
         }
         // A fold has fewer pairs: the same cost for all of them together.
         let share = pairs.len() as f64 / fitted.len() as f64;
-        let mut start = Vec::new();
+        let (mut start, mut scores) = (Vec::new(), Vec::new());
         for (cost, right) in costs.iter().zip(&mut right) {
-            let ranked = rank_with(
-                samples,
-                &curvature,
-                &fitted,
-                &RankOptions { cost: cost * share, tolerance: 1e-3, ..*options },
-                &start,
-            );
-            *right += pair_accuracy(&ranked.scores(samples), &judged) * judged.len() as f64;
-            start = ranked.weights;
+            // Which cost is best shows in a few digits.
+            let options = RankOptions { cost: cost * share, tolerance: 1e-3, ..*options };
+            start = rank_roughly(&curvature, &fitted, &options, &start);
+            samples.product(&start, &mut scores);
+            *right += pair_accuracy(&scores, &judged) * judged.len() as f64;
         }
         count += judged.len() as f64;
     }

@@ -43,6 +43,11 @@ impl Pairs {
         Self { ordered: filter(&self.ordered), similar: filter(&self.similar) }
     }
 
+    /// The same pairs by their first sample, in the order in which they are now: a sum over the pairs then stays where it is.
+    pub(super) fn by_first(&self) -> Self {
+        Self { ordered: by_first(&self.ordered), similar: by_first(&self.similar) }
+    }
+
     /// A share of the ordered and of the similar pairs, drawn without repetition.
     pub fn sample(&self, share: f64, random: &mut ChaCha8Rng) -> Self {
         Self { ordered: draw(&self.ordered, share, random), similar: draw(&self.similar, share, random) }
@@ -57,6 +62,21 @@ impl Pairs {
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
+}
+
+/// Sorts by counting.
+fn by_first(pairs: &[[u32; 2]]) -> Vec<[u32; 2]> {
+    let samples = pairs.iter().map(|[i, _]| *i as usize + 1).max().unwrap_or(0);
+    let mut next = vec![0; samples + 1];
+    pairs.iter().for_each(|[i, _]| next[*i as usize + 1] += 1);
+    (0..samples).for_each(|i| next[i + 1] += next[i]);
+    let mut sorted = vec![[0; 2]; pairs.len()];
+    for pair in pairs {
+        let at = &mut next[pair[0] as usize];
+        sorted[*at] = *pair;
+        *at += 1;
+    }
+    sorted
 }
 
 fn draw(pairs: &[[u32; 2]], share: f64, random: &mut ChaCha8Rng) -> Vec<[u32; 2]> {
@@ -105,6 +125,13 @@ fn ranks(values: &[f64]) -> Vec<f64> {
 mod tests {
     use super::*;
     use rand::SeedableRng;
+
+    #[test]
+    fn pairs_by_first_keep_their_order() {
+        let pairs = Pairs { ordered: vec![[3, 1], [0, 2], [3, 0], [1, 4], [0, 1]], similar: vec![] };
+        assert_eq!(pairs.by_first().ordered, [[0, 2], [0, 1], [1, 4], [3, 1], [3, 0]]);
+        assert_eq!(Pairs::default().by_first(), Pairs::default());
+    }
 
     #[test]
     fn levels_make_pairs_within_groups() {

@@ -245,13 +245,19 @@ impl<'a> Problem<'a> {
         let cross = product(rows, self.outputs);
         let weights = product(inverse.as_ref(), cross.as_ref());
         // Of normal equations: |Y - basis' W|^2 = |Y|^2 - <cross, W> - <W, damping W>.
-        let (mut explained, mut damped) = (0.0, 0.0);
+        // A sum for every column of the basis: sums that do not wait for each other.
+        let (mut explained, mut squares) = (vec![0.0; columns], vec![0.0; columns]);
         for o in 0..weights.ncols() {
-            for k in 0..columns {
-                explained += cross[(k, o)] * weights[(k, o)];
-                damped += damping(k) * weights[(k, o)] * weights[(k, o)];
+            let (cross, weights) = (cross.col_as_slice(o), weights.col_as_slice(o));
+            for (((explained, squares), cross), weight) in
+                explained.iter_mut().zip(&mut squares).zip(cross).zip(weights)
+            {
+                *explained += cross * weight;
+                *squares += weight * weight;
             }
         }
+        let explained: f64 = explained.iter().sum();
+        let damped: f64 = squares.iter().enumerate().map(|(k, square)| damping(k) * square).sum();
         let weight = self.decay(hidden);
         let steep: f64 = hidden.parameters.iter().map(|p| p * p).sum();
         let residual = (self.total - explained - damped).max(0.0);
@@ -263,9 +269,9 @@ impl<'a> Problem<'a> {
         let (samples, units) = (self.inputs.rows(), hidden.units());
         let columns = fit.weights.nrows();
         let (basis, weights) = (MatRef::from_row_major_slice(&fit.basis, columns, samples), fit.weights.as_ref());
-        let slopes = hidden.slopes(&self.inputs, &fit.bends);
+        let by_parameter = hidden.slopes(&self.inputs, &fit.bends);
         let count = hidden.parameters.len();
-        let slopes = MatRef::from_row_major_slice(&slopes, count, samples);
+        let slopes = MatRef::from_row_major_slice(&by_parameter, count, samples);
         let own = weights.subrows(0, units);
         // Residuals seen from each unit: (Y - basis' W) W_h'.
         let inner = product(weights, own.transpose());
@@ -273,7 +279,7 @@ impl<'a> Problem<'a> {
         let weight = self.decay(hidden);
         let per_unit = hidden.inputs + 1;
         let gradient = (0..count).map(|k| {
-            let along: f64 = (0..samples).map(|i| slopes[(k, i)] * seen[(i, k / per_unit)]).sum();
+            let along = dot(&by_parameter[k * samples..][..samples], seen.col_as_slice(k / per_unit));
             weight * hidden.parameters[k] - along
         });
         let cross = product(basis, slopes.transpose());

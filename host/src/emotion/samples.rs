@@ -2,6 +2,7 @@
 
 use faer::MatRef;
 
+use super::rank::Rows;
 use crate::vector::{Work, dot, vectorised};
 
 /// Samples, row-major `[rows x columns]`.
@@ -67,6 +68,20 @@ impl<'a> Samples<'a> {
         self.add_transposed(&vec![1.0; self.rows()], &mut mean);
         mean.iter_mut().for_each(|m| *m /= self.rows().max(1) as f64);
         mean
+    }
+}
+
+impl Rows for Samples<'_> {
+    fn product(&self, weights: &[f64], out: &mut Vec<f64>) {
+        self.product(weights, out);
+    }
+
+    fn add_transposed(&self, factors: &[f64], out: &mut [f64]) {
+        self.add_transposed(factors, out);
+    }
+
+    fn rows(&self) -> usize {
+        self.rows()
     }
 }
 

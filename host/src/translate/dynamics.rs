@@ -106,21 +106,38 @@ impl Dynamics {
         if u.nrows() == 0 {
             return (before, after);
         }
-        for (block, [a, b, c, d]) in self.transition.iter().enumerate() {
-            let rows = &self.input[2 * block * self.inputs..2 * (block + 1) * self.inputs];
-            let (row0, row1) = rows.split_at(self.inputs);
-            let drive =
-                |frame: usize, row: &[f64]| -> f64 { row.iter().enumerate().map(|(i, w)| w * u[(frame, i)]).sum() };
-            let (u0, u1) = (drive(0, row0), drive(0, row1));
-            let det = (1.0 - a) * (1.0 - d) - b * c;
-            let mut x = [((1.0 - d) * u0 + b * u1) / det, (c * u0 + (1.0 - a) * u1) / det];
-            for frame in 0..u.nrows() {
-                (before[(frame, 2 * block)], before[(frame, 2 * block + 1)]) = (x[0], x[1]);
-                x = [a * x[0] + b * x[1] + drive(frame, row0), c * x[0] + d * x[1] + drive(frame, row1)];
-                (after[(frame, 2 * block)], after[(frame, 2 * block + 1)]) = (x[0], x[1]);
-            }
+        let row = |frame: usize| -> Vec<f64> { (0..self.inputs).map(|i| u[(frame, i)]).collect() };
+        let mut x = self.held(&row(0));
+        for frame in 0..u.nrows() {
+            x.iter().enumerate().for_each(|(state, x)| before[(frame, state)] = *x);
+            self.step(&mut x, &row(frame));
+            x.iter().enumerate().for_each(|(state, x)| after[(frame, state)] = *x);
         }
         (before, after)
+    }
+
+    /// The state in which `u` has been held for ever.
+    pub(super) fn held(&self, u: &[f64]) -> Vec<f64> {
+        let mut x = Vec::with_capacity(self.states());
+        for ([a, b, c, d], rows) in self.blocks() {
+            let [u0, u1] = drive(rows, u);
+            let det = (1.0 - a) * (1.0 - d) - b * c;
+            x.extend([((1.0 - d) * u0 + b * u1) / det, (c * u0 + (1.0 - a) * u1) / det]);
+        }
+        x
+    }
+
+    /// `x <- A x + B u`.
+    pub(super) fn step(&self, x: &mut [f64], u: &[f64]) {
+        for (([a, b, c, d], rows), x) in self.blocks().zip(x.as_chunks_mut::<2>().0) {
+            let [u0, u1] = drive(rows, u);
+            *x = [a * x[0] + b * x[1] + u0, c * x[0] + d * x[1] + u1];
+        }
+    }
+
+    /// The blocks of `A`, each with its two rows of `B`. None without inputs.
+    fn blocks(&self) -> impl Iterator<Item = (&[f64; 4], &[f64])> {
+        self.transition.iter().zip(self.input.chunks_exact(2 * self.inputs.max(1)))
     }
 
     /// `W [x'; u]` written for the state before the step: `W_x A` and `W_x B + W_u`, row-major `[outputs x states]` and
@@ -143,6 +160,12 @@ impl Dynamics {
         }
         (of_state, of_input)
     }
+}
+
+/// Two rows of `B` times `u`.
+fn drive(rows: &[f64], u: &[f64]) -> [f64; 2] {
+    let (first, second) = rows.split_at(u.len());
+    [first, second].map(|row| row.iter().zip(u).map(|(w, u)| w * u).sum())
 }
 
 /// Frequency that carries most of a motion, Hz, between 0.4 and 3: the gait's, where there is one.

@@ -8,7 +8,7 @@ use kinesic_host::align::{AlignError, Series, Settings, align};
 use kinesic_host::prepare::Source;
 use kinesic_host::rig::Locals;
 use kinesic_host::translate::Dynamics;
-use kinesic_host::translate::identify::{balanced, impulse_response, modal};
+use kinesic_host::translate::identify::identify;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use serde_json::{Value, json};
@@ -19,8 +19,6 @@ use kinesic_benches::measure::{peak_mib, timed, write};
 const ORDER: usize = 40;
 const FRAMES: f64 = 6000.0;
 const FRAME_RATE: f64 = 60.0;
-/// Length of the impulse response, frames: what `kinesic train translate` takes at this frame rate.
-const TAPS: usize = 48;
 /// Pairs of poles of the made system.
 const POLES: usize = 8;
 /// Noise of the made system's outputs, in their deviations.
@@ -106,20 +104,10 @@ fn run(folder: &Path, u: &Mat<f64>, y: &Mat<f64>, frames: usize) -> Result<Value
     let train = |m: &Mat<f64>| vec![m.subrows(0, frames).to_owned()];
     let covered = 0..frames;
     let (inputs, outputs, covered) = (train(u), train(y), [covered]);
-    let (seconds, found) = timed(|| {
-        let response = impulse_response(&inputs, &outputs, &covered, TAPS, FRAME_RATE)?;
-        let model = modal(&balanced(&response, ORDER));
-        Some((response, model))
-    });
+    let (seconds, model) = timed(|| identify(&inputs, &outputs, &covered, ORDER, FRAME_RATE));
     let peak = peak_mib();
-    let (response, model) = found.ok_or("nothing identified")?;
-    let u = u.subrows(frames, u.nrows() - frames).to_owned();
-    let direct = response.taps.first().ok_or("no direct term")?;
-    let mut simulated = model.dynamics.states_before(&u) * model.output.transpose() + &u * direct.transpose();
-    for (c, constant) in response.constant.iter().enumerate() {
-        simulated.col_mut(c).iter_mut().for_each(|y| *y += constant);
-    }
-    let radius = model.dynamics.transition.iter().map(|[a, b, c, d]| (a * d - b * c).abs().sqrt()).fold(0.0, f64::max);
+    let model = model.ok_or("nothing identified")?;
+    let (simulated, radius) = (model.simulate(&u.subrows(frames, u.nrows() - frames).to_owned()), model.radius());
     let test = y.subrows(frames, y.nrows() - frames);
     Ok(json!({
         "seconds": seconds, "peak_mib": peak, "fit": fit(test, simulated.as_ref()), "radius": radius,

@@ -9,10 +9,12 @@
 //! | `autoencoder` | an epoch of 120-300-120, 33,000 samples, batches of 128 |
 //! | `rank`, `rank-similar`, `rank-full` | a ranking function: 1,000 motions, 100,000 pairs, 520 or 1,560 numbers a motion |
 //! | `regress` | strength -> 520 numbers by ten tanh units, 1,000 motions |
+//! | `sparse`, `learn` | 25 sparse components of 200 frames x 69 channels, 500 steps of style learning |
 //! | `pca`, `pca-clip` | 40 principal components of 13,000 keyframes x 120, of 1,400 frames x 198 |
 
 mod align;
 mod autoencoder;
+mod components;
 mod identify;
 mod motions;
 mod principal;
@@ -37,6 +39,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         "rank" => rank::run(folder, scale, rank::Kind::Reduced)?,
         "rank-similar" => rank::run(folder, scale, rank::Kind::Similar)?,
         "rank-full" => rank::run(folder, scale, rank::Kind::Full)?,
+        "sparse" => components::factorise(scale)?,
+        "learn" => components::learn_style(scale)?,
         "regress" => regress::run(folder, scale)?,
         "pca" => principal::keyframes(folder, scale)?,
         "pca-clip" => principal::clip(folder, scale)?,

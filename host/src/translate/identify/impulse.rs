@@ -62,10 +62,11 @@ pub fn impulse_response(
         let lambda = (-1.0 / (fps * decay)).exp();
         let (precision, log_det) = tc_precision(taps, lambda);
         for ratio in RATIOS {
-            let penalised = Mat::from_fn(size, size, |i, j| {
-                let prior = if i / taps == j / taps { precision[(i % taps, j % taps)] } else { 0.0 };
-                gram[(i, j)] + ratio * prior
-            });
+            let mut penalised = gram.clone();
+            for input in 0..m {
+                let mut own = penalised.submatrix_mut(input * taps, input * taps, taps, taps);
+                faer::zip!(&mut own, &precision).for_each(|faer::unzip!(sum, prior)| *sum += ratio * prior);
+            }
             let Ok(cholesky) = penalised.llt(Side::Lower) else { continue };
             let solution = cholesky.solve(&cross);
             let factor = cholesky.L();
