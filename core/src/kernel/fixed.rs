@@ -72,16 +72,20 @@ fn hold(half: i32) -> i32 {
 /// One joint's model: `y += C x`, then `x' = A x + B u`, states held in their range. `u` in int16, see
 /// [`JOINT_INPUT_CUT`]. Cost: 16 multiply-adds a block.
 pub fn advance_joint_fixed(blocks: &[FixedBlock], u: [i32; 3], x: &mut [[i32; 2]], y: &mut [i32; 3]) {
-    let [u0, u1, u2] = u;
+    // Two passes: the values of one do not fit thirteen registers.
     let [mut y0, mut y1, mut y2] = *y;
-    for (block, x) in blocks.iter().zip(x) {
-        let [a, b, c, d, b00, b01, b02, b10, b11, b12, c00, c10, c20, c01, c11, c21, input_shift, output_shift] =
-            *block;
-        let [x0, x1] = *x;
-        let output = |c0, c1| scale16(c0, x0).wrapping_add(scale16(c1, x1)).wrapping_shr(output_shift as u32);
+    for (block, [x0, x1]) in blocks.iter().zip(&*x) {
+        let [.., c00, c10, c20, c01, c11, c21, _, output_shift] = *block;
+        let output = |c0, c1| scale16(c0, *x0).wrapping_add(scale16(c1, *x1)).wrapping_shr(output_shift as u32);
         y0 = y0.wrapping_add(output(c00, c01));
         y1 = y1.wrapping_add(output(c10, c11));
         y2 = y2.wrapping_add(output(c20, c21));
+    }
+    *y = [y0, y1, y2];
+    let [u0, u1, u2] = u;
+    for (block, x) in blocks.iter().zip(x) {
+        let [a, b, c, d, b00, b01, b02, b10, b11, b12, .., input_shift, _] = *block;
+        let [x0, x1] = *x;
         let input = |b0, b1, b2| {
             let product = |b: i16, u: i32| i32::from(b).wrapping_mul(u);
             product(b0, u0).wrapping_add(product(b1, u1)).wrapping_add(product(b2, u2)).wrapping_shr(input_shift as u32)
@@ -89,7 +93,6 @@ pub fn advance_joint_fixed(blocks: &[FixedBlock], u: [i32; 3], x: &mut [[i32; 2]
         let half = |a0, a1, input: i32| scale16(a0, x0).wrapping_add(scale16(a1, x1)).wrapping_add(input);
         *x = [hold(half(a, b, input(b00, b01, b02))), hold(half(c, d, input(b10, b11, b12)))];
     }
-    *y = [y0, y1, y2];
 }
 
 /// `x <- A x + input / 2` for all blocks, states held in their range; `input` in halves of a state's unit. Cost: 4
