@@ -46,9 +46,11 @@ fn main() {
 
 /// Which sums and products stand for the compiler's: none where there is an FPU.
 fn soft_float(target: &str) {
-    let features = var("CARGO_CFG_TARGET_FEATURE").unwrap_or_default();
     if var("CARGO_FEATURE_SOFT_FLOAT").is_err() {
-    } else if target.starts_with("thumbv6m") {
+        return;
+    }
+    let features = var("CARGO_CFG_TARGET_FEATURE").unwrap_or_default();
+    if target.starts_with("thumbv6m") {
         println!("cargo::rustc-cfg=kinesic_soft_float=\"thumb1\"");
     } else if target.starts_with("riscv32") && !features.split(',').any(|feature| feature == "f") {
         println!("cargo::rustc-cfg=kinesic_soft_float=\"riscv\"");

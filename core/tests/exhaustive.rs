@@ -149,6 +149,7 @@ fn odd_arguments_give_no_surprise() {
     assert_eq!([tanh(f32::INFINITY), tanh(f32::NEG_INFINITY)], [tanh(f32::MAX), -tanh(f32::MAX)]);
     // Never beyond one, for any f32 there is, so that a code unit stays a code unit: tanh is monotonic up to its end.
     assert!(tanh(f32::MAX) <= 1.0 && tanh(4.97) <= 1.0);
+    assert!((quadrant_angle(f32::NAN, 1.0, 1.0) - core::f32::consts::FRAC_PI_2).abs() < 1e-6);
     for x in [f32::NAN, f32::INFINITY, f32::MAX, f32::MIN_POSITIVE, 1e30] {
         // Out of range the value means nothing, but it comes, without a panic.
         let _ = (sin_cos(x), sin_cos(-x), quadrant_angle(x, x, 1.0));

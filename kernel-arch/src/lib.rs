@@ -4,7 +4,8 @@
 //! [`portable`] is the definition of the loops, in safe Rust. Where the compiler does not find the right instructions there is
 //! assembly: SMLAD on cores with the DSP extension, VMLADAVA on those with Helium, MULS on ARMv6-M, block loads and VSQRT of the single-precision FPU. On every
 //! other core the portable loops run. The bits are the same: integers are modulo 2^32, floats have one order and two roundings a
-//! multiply-add, roots are correctly rounded. Without the feature `asm` the crate holds no unsafe code.
+//! multiply-add, roots are correctly rounded. [`soft`] is f32 arithmetic for cores without an FPU. Without the features `asm` and
+//! `soft-float` the crate holds no unsafe code.
 #![no_std]
 
 #[cfg(kinesic_tile)]

@@ -41,7 +41,8 @@ pub fn sin_cos(x: f32) -> (f32, f32) {
 }
 
 /// Angle of the vector `(cos, sin)` of length `norm` in the first quadrant, 0..pi/2: the half of the half angle by a square root,
-/// then the Taylor series of the arc tangent to degree 15. Absolute error below 1e-6. Cost: 12 multiply-adds, two divisions, a root.
+/// then the Taylor series of the arc tangent to degree 15. Absolute error below 1e-6; pi/2 where the sine is no number. Cost: 12
+/// multiply-adds, two divisions, a root.
 pub fn quadrant_angle(sin: f32, cos: f32, norm: f32) -> f32 {
     // At most 1: rounding may make the sine the longer.
     let half = (sin / (norm + cos)).min(1.0);

@@ -32,8 +32,11 @@ impl Heading {
         let (x, z) = (across.x, across.z);
         let norm = sqrt(x * x + z * z);
         // Forward is across x up: (-z, x) in the ground plane.
+        if norm <= 1e-3 || norm.is_nan() {
+            return self;
+        }
         let inverse = 1.0 / norm;
-        if norm > 1e-3 { Self { sin: -z * inverse, cos: x * inverse } } else { self }
+        Self { sin: -z * inverse, cos: x * inverse }
     }
 
     /// From the world's axes to the heading's.
@@ -50,8 +53,11 @@ impl Heading {
     pub fn turned(self, sin: f32, cos: f32) -> Self {
         let (s, c) = (self.sin * cos + self.cos * sin, self.cos * cos - self.sin * sin);
         let norm = sqrt(s * s + c * c);
+        if norm <= 1e-3 || norm.is_nan() {
+            return self;
+        }
         let inverse = 1.0 / norm;
-        if norm > 1e-3 { Self { sin: s * inverse, cos: c * inverse } } else { self }
+        Self { sin: s * inverse, cos: c * inverse }
     }
 
     /// Sine and cosine of the turn from `before` to `self`.

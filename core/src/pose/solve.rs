@@ -128,7 +128,8 @@ fn solve_symmetric(m: &Matrix3<f32>, v: Vector3<f32>) -> Vector3<f32> {
 /// The rotation along the quaternion with this real and imaginary part; the identity where both vanish against `scale` (a half
 /// turn has no smallest rotation, and a bone without length no direction).
 fn half_way(real: f32, imaginary: Vector3<f32>, scale: f32) -> UnitQuaternion<f32> {
-    if scale > 1e-12 && real > 1e-6 * scale {
+    // Squares neither vanish nor overflow between these.
+    if (1e-12..1e12).contains(&scale) && real > 1e-6 * scale {
         let inverse = 1.0 / sqrt(real * real + imaginary.dot(&imaginary));
         UnitQuaternion::new_unchecked(Quaternion::from_parts(real * inverse, imaginary * inverse))
     } else {
@@ -201,5 +202,30 @@ mod tests {
         let mut out = Pose::identity();
         solve(&skeleton(), &source, &world, &targets, &mut out);
         assert!(out.rotations.iter().all(|q| (q.norm() - 1.0).abs() < 1e-5));
+        // Farther away than squares reach: rotations all the same.
+        targets[6] = Vector3::new(1e30, -1e30, 1e25);
+        solve(&skeleton(), &source, &world, &targets, &mut out);
+        assert!(out.rotations.iter().all(|q| (q.norm() - 1.0).abs() < 1e-5));
+    }
+
+    #[test]
+    fn eight_bones_of_a_joint_are_fitted_and_the_ninth_follows() {
+        let offset = |bone: usize| [libm::cosf(bone as f32), 0.3 * bone as f32 - 1.0, libm::sinf(1.7 * bone as f32)];
+        let parents = [0u16; 10];
+        let mut offsets = [[0.0; 3]; 10];
+        (1..10).for_each(|bone| offsets[bone] = offset(bone));
+        let mut aims = [[0u16; 2]; 9];
+        (1..10).for_each(|bone| aims[bone - 1] = [0, bone as u16]);
+        let hand = Skeleton::new(&parents, &offsets, &aims, &[[1, 2]]).unwrap();
+        let source = Pose::<10>::identity();
+        let mut world = World::identity();
+        forward(&hand, &source, &mut world);
+        let turn = UnitQuaternion::from_scaled_axis(Vector3::new(0.4, -0.3, 0.5));
+        let mut targets = world.positions.map(|position| turn * position);
+        // It pulls elsewhere, and does not count.
+        targets[9] = Vector3::new(3.0, 0.0, 0.0);
+        let mut out = Pose::identity();
+        solve(&hand, &source, &world, &targets, &mut out);
+        assert!(out.rotations[0].angle_to(&turn) < 1e-3, "{}", out.rotations[0].angle_to(&turn));
     }
 }

@@ -83,10 +83,16 @@ pub fn run(args: &Args) -> miette::Result<()> {
     bar.set_message("reading");
     let (face_packs, packs) =
         read_packs(&packs)?.into_iter().partition::<Vec<_>, _>(|pack| holds(pack, |m| m.face().is_some()));
-    let (emotions, packs) = packs.into_iter().partition::<Vec<_>, _>(|pack| holds(pack, |m| m.emotion().is_some()));
+    let plays_clips = |m: &ModelMeta| m.translator().is_some() || m.components().is_some() || m.mechanics().is_some();
+    let (emotions, packs) = packs
+        .into_iter()
+        .partition::<Vec<_>, _>(|pack| holds(pack, |m| m.emotion().is_some()) && !holds(pack, plays_clips));
+    for pack in packs.iter().filter(|pack| holds(pack, |m| m.emotion().is_some())) {
+        eprintln!("{}.kin: the page plays its engines for clips, not its emotion", pack.name);
+    }
     if let (Some(emotion), Some(clip), []) = (emotions.first(), clips.first(), &packs[..]) {
         return Err(miette!(
-            help = "leave the clip away, or name a pack that plays clips too: models/weary.kin",
+            help = "leave the clip out, or name a pack that plays clips too: models/weary.kin",
             "no pack plays {}: {}.kin holds emotions, whose motion comes from strengths alone",
             clip.display(),
             emotion.name

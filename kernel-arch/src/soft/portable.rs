@@ -180,7 +180,7 @@ pub fn rare_mul(a: u32, b: u32) -> u32 {
     round_any(top, high + low - 126 - zeros as i32, sign)
 }
 
-/// `a / b`, bit by bit: what is not rare has a faster way on every core.
+/// `a / b`, bit by bit. ARMv6-M comes here for what is rare alone, RISC-V never: it has the compiler's.
 #[cold]
 #[inline(never)]
 pub fn div(a: u32, b: u32) -> u32 {

@@ -15,7 +15,8 @@ function element(tag, properties, ...children) {
 
 // A labelled slider that shows its value.
 function slider({ id, label, min, max, step, value, change }) {
-  const output = element("output", {});
+  // The value is read aloud with the slider, not a second time.
+  const output = element("output", { ariaLive: "off" });
   output.htmlFor = id;
   const input = element("input", { id, type: "range", min, max, step, value });
   const say = () => input.setAttribute("aria-valuetext", (output.textContent = Number(input.value).toFixed(2)));
@@ -24,7 +25,9 @@ function slider({ id, label, min, max, step, value, change }) {
     change(Number(input.value));
   });
   say();
-  return element("label", { className: "slider", htmlFor: id }, element("span", { textContent: label }), output, input);
+  const name = element("span", { id: `${id}-name`, textContent: label });
+  input.setAttribute("aria-labelledby", name.id);
+  return element("label", { className: "slider", htmlFor: id }, name, output, input);
 }
 
 // The controls of a pack.
