@@ -7,7 +7,8 @@ usage() {
     cat <<EOF
 usage: ./ci.sh [COMMAND]
 
-  test      everything below, in this order (the default)
+  test      the four stages below, in this order (the default); every stage runs, and what failed is listed at the end
+  fetch     downloads the crates of every workspace, for the platforms that are built here
   lint      formatting, clippy and documentation, without warnings
   unit      all tests of the workspace, on the real clips where they are (KINESIC_DATA, default ../shared/data)
   firmware  images for every target, run in the emulator, against the budgets
@@ -18,6 +19,9 @@ usage: ./ci.sh [COMMAND]
   fuzz [SECONDS]
             every fuzz target for so long (default 60), from the corpus in fuzz/; what it finds is left in fuzz/artifacts
   deny      licences, sources and known vulnerabilities of all dependencies, by cargo-deny and deny.toml
+
+With CI=true, \`test\` starts like a new machine: its cargo home holds the configuration of yours and nothing else, and its target
+folder is empty. Both are temporary.
 EOF
 }
 
@@ -27,44 +31,117 @@ need() {
     exit 1
 }
 
-lint() {
-    cargo fmt --all --check
-    # Crates for microcontrollers are workspaces of their own.
-    for crate in c docs/board firmware-sim/image firmware-sim/plugin fuzz tests/no-std-link wasm; do
-        cargo fmt --manifest-path "$crate/Cargo.toml" --check
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+failed=()
+
+# `step TITLE COMMAND...` runs one check, and remembers it if it fails: the title, what failed in it, how to repeat it.
+step() {
+    local title=$1 started=$SECONDS log="$scratch/step.log" line
+    shift
+    echo "== $title"
+    if "$@" 2>&1 | tee "$log"; then
+        echo "== $title: passed in $((SECONDS - started)) s"
+        return
+    fi
+    echo "== $title: FAILED after $((SECONDS - started)) s"
+    failed+=("$title")
+    while read -r line; do
+        failed+=("    $line")
+    done < <(sed -nE 's/^test (.*) \.\.\. FAILED$/test \1/p; s/^(FAILED: .*)$/\1/p; s/^(error: could not compile .*)$/\1/p' "$log" | sort -u)
+    # Cargo names the test binaries that failed; a budget, its target and workload.
+    while read -r line; do
+        failed+=("    repeat: $line")
+    done < <({
+        sed -nE 's/^    `(-p .*)`$/cargo test --release --locked \1/p' "$log" | sed "s/\$/${repeat_with:-}/"
+        sed -nE 's/^FAILED: ([a-z0-9]+), ([a-z0-9-]+): .*/cargo run --release --locked -p kinesic-firmware-sim -- check --target \1 --workload \2/p' "$log" | sort -u
+    } | grep . || echo "$*")
+}
+
+# Prints what failed, and returns 1 if anything did.
+verdict() {
+    [ ${#failed[@]} -eq 0 ] && return
+    echo
+    echo "FAILED:"
+    printf '  %s\n' "${failed[@]}"
+    return 1
+}
+
+# A cargo home and a target folder as on a machine that has never built this, so that a hidden download or tool shows.
+new_machine() {
+    local file home=${CARGO_HOME:-$HOME/.cargo}
+    mkdir "$scratch/cargo"
+    for file in config config.toml credentials credentials.toml; do
+        if [ -f "$home/$file" ]; then cp -p "$home/$file" "$scratch/cargo/"; fi
     done
-    cargo clippy --release --workspace --all-targets --locked -- -D warnings
-    RUSTDOCFLAGS="-D warnings" cargo doc --release --workspace --no-deps --locked
+    export CARGO_HOME=$scratch/cargo CARGO_TARGET_DIR=$scratch/target
+    echo "CI=true: an empty cargo home and an empty target folder in $scratch"
+}
+
+# Workspaces of their own: crates for microcontrollers, browsers and the emulator.
+others=(c docs/board firmware-sim/image firmware-sim/plugin fuzz tests/no-std-link wasm)
+
+# The crates of one workspace, for the platforms that it is built for.
+fetch_one() {
+    local platform platforms=("--target" "$(rustc -vV | sed -n 's/^host: //p')")
+    case $1 in
+    c | docs/board | firmware-sim/image | tests/no-std-link)
+        for platform in "${bare_metal[@]}"; do platforms+=(--target "$platform"); done
+        ;;
+    wasm) platforms+=(--target wasm32-unknown-unknown) ;;
+    esac
+    cargo fetch --locked --quiet --manifest-path "$1/Cargo.toml" "${platforms[@]}" && return
+    echo "ci.sh: not all crates of '$1' are here, and they cannot be downloaded. With a network: cargo fetch --locked --manifest-path $1/Cargo.toml" >&2
+    return 1
+}
+bare_metal=(thumbv6m-none-eabi thumbv7em-none-eabihf thumbv8m.main-none-eabihf riscv32imc-unknown-none-elf)
+
+fetch() {
+    local workspace
+    for workspace in . "${others[@]}"; do
+        step "fetch: crates of $workspace" fetch_one "$workspace"
+    done
+}
+
+lint() {
+    local crate
+    step "lint: formatting" cargo fmt --all --check
+    for crate in "${others[@]}"; do
+        step "lint: formatting of $crate" cargo fmt --manifest-path "$crate/Cargo.toml" --check
+    done
+    step "lint: clippy" cargo clippy --release --workspace --all-targets --locked -- -D warnings
+    step "lint: documentation" env RUSTDOCFLAGS="-D warnings" cargo doc --release --workspace --no-deps --locked
+}
+
+# Tests that need the real clips name themselves in a file where these are missing.
+skipped() {
+    [ -s "$KINESIC_SKIPPED" ] || return 0
+    echo "SKIPPED for want of the real clips: $(wc -l <"$KINESIC_SKIPPED") tests"
+    sed 's/^/  /' "$KINESIC_SKIPPED"
 }
 
 unit() {
-    local skipped
-    skipped=$(mktemp)
-    KINESIC_SKIPPED=$skipped cargo test --release --workspace --locked --no-fail-fast
-    if [ -s "$skipped" ]; then
-        echo "SKIPPED for want of the real clips: $(wc -l <"$skipped") tests"
-        sed 's/^/  /' "$skipped"
-    fi
-    rm -f "$skipped"
+    export KINESIC_SKIPPED=$scratch/skipped
+    : >"$KINESIC_SKIPPED"
+    step "unit: tests of the workspace" cargo test --release --workspace --locked --no-fail-fast
+    skipped
 }
 
 firmware() {
-    local folder
-    firmware-sim/setup.sh
-    cargo build --release --locked -p kinesic-firmware-sim --tests
-    folder=$(mktemp -d)
-    cargo run --release --locked -p kinesic-firmware-sim -- check --json "$folder/first.json"
-    cargo run --release --locked -p kinesic-firmware-sim -- check --json "$folder/second.json" >/dev/null
-    cmp "$folder/first.json" "$folder/second.json"
-    echo "A second run measured the same, to the digit."
-    : >"$folder/skipped"
-    # Ignored tests are those that need the emulator.
-    KINESIC_SKIPPED="$folder/skipped" cargo test --release --locked -p kinesic-firmware-sim -- --include-ignored
-    if [ -s "$folder/skipped" ]; then
-        echo "SKIPPED for want of the real clips: $(wc -l <"$folder/skipped") tests"
-        sed 's/^/  /' "$folder/skipped"
+    local simulate=(cargo run --release --locked -p kinesic-firmware-sim --)
+    export KINESIC_SKIPPED=$scratch/skipped
+    : >"$KINESIC_SKIPPED"
+    step "firmware: emulators, compilers and browser" firmware-sim/setup.sh
+    step "firmware: budgets" "${simulate[@]}" check --json "$scratch/budgets.json"
+    # Which images run twice changes with every commit.
+    if [ -f "$scratch/budgets.json" ]; then
+        step "firmware: the same to the digit, in a second run" \
+            "${simulate[@]}" check --again "$scratch/budgets.json" --seed "$(git rev-parse HEAD 2>/dev/null || echo none)"
     fi
-    rm -r "$folder"
+    # Ignored tests are those that need the emulator.
+    repeat_with=" -- --include-ignored" \
+        step "firmware: tests in the emulator" cargo test --release --locked --no-fail-fast -p kinesic-firmware-sim -- --include-ignored
+    skipped
 }
 
 wasm() {
@@ -125,7 +202,7 @@ deny() {
         exit 1
     fi
     local manifest
-    for manifest in Cargo.toml {c,docs/board,firmware-sim/image,firmware-sim/plugin,fuzz,tests/no-std-link,wasm}/Cargo.toml; do
+    for manifest in Cargo.toml "${others[@]/%//Cargo.toml}"; do
         echo "$manifest"
         cargo deny --locked --manifest-path "$manifest" --config "$PWD/deny.toml" check \
             --allow license-not-encountered --allow license-exception-not-encountered licenses sources bans
@@ -135,16 +212,24 @@ deny() {
 }
 
 need cargo "Install Rust: https://rustup.rs"
+need rustc "Install Rust: https://rustup.rs"
 need cc "Install a C linker: apt-get install gcc"
 case "${1:-test}" in
-# Not joined by &&: that would switch `set -e` off inside them.
 test)
+    if [ "${CI:-}" = true ]; then new_machine; fi
+    fetch
     lint
     unit
     firmware
+    verdict
+    echo "Everything passed in $((SECONDS / 60)) min $((SECONDS % 60)) s."
+    ;;
+fetch | lint | unit | firmware)
+    "$1"
+    verdict
     ;;
 bench-peers) bench_peers ;;
-lint | unit | firmware | wasm | header | deny) "$1" ;;
+wasm | header | deny) "$1" ;;
 fuzz) fuzz "${2:-60}" ;;
 -h | --help) usage ;;
 *)

@@ -13,10 +13,12 @@
 //! | [`profile`] | what the plugin counted |
 //! | [`isa`], [`price`] | instructions to modelled cycles |
 //! | [`check`], [`report`] | measured against allowed; the table and the JSON |
+//! | [`again`] | a sample of an earlier check, measured again |
 //! | [`browser`] | runs a page in headless Chromium |
 //! | [`same`] | host against targets on recorded clips |
 //! | [`soak`] | host against targets over very many frames |
 
+pub mod again;
 pub mod browser;
 pub mod build;
 pub mod check;

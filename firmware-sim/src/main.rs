@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+use kinesic_firmware_sim::again::again;
 use kinesic_firmware_sim::check::{Selection, check};
 use kinesic_firmware_sim::data::{Data, home};
 use kinesic_firmware_sim::report;
@@ -41,6 +42,12 @@ enum Command {
         /// Prints limits for budgets.toml too: what was measured, and so many percent more.
         #[arg(long, value_name = "PERCENT")]
         suggest: Option<f64>,
+        /// Runs a sample of an earlier check again, from the file that its --json wrote; exit 1 where a digit differs.
+        #[arg(long, value_name = "FILE", conflicts_with_all = ["target", "workload", "json", "suggest"])]
+        again: Option<PathBuf>,
+        /// Any text, such as a commit: it decides which of the earlier results are in the sample.
+        #[arg(long, value_name = "TEXT", default_value = "", requires = "again")]
+        seed: String,
     },
     /// Trains translators on recorded clips and compares every output bit of every target with the host's.
     Same {
@@ -70,7 +77,12 @@ enum Command {
 
 fn main() -> miette::Result<ExitCode> {
     let failures = match Arguments::parse().command {
-        Command::Check { target, workload, json, budgets, hot, suggest } => {
+        Command::Check { again: Some(earlier), seed, budgets, .. } => {
+            let compared = again(&Data::read(budgets.as_deref())?, &earlier, &seed, &|news| eprintln!("{news}"))?;
+            println!("{compared}");
+            compared.failures
+        }
+        Command::Check { target, workload, json, budgets, hot, suggest, .. } => {
             let data = Data::read(budgets.as_deref())?;
             let all = check(&data, &Selection { targets: target, workloads: workload }, &|news| eprintln!("{news}"))?;
             print!("{}", report::table(&data, &all));
