@@ -7,6 +7,7 @@
 //! |---|---|---|
 //! | [`model`] | the pack: header check, typed views into borrowed bytes, errors | `docs/pack.md` |
 //! | [`pose`] | skeleton, pose, forward kinematics, heading, joint positions -> rotations | |
+//! | [`rig`] | coordinates: hinges, balls, sliders; pose -> frame of coordinates -> pose | |
 //! | [`translate`] | style translation by linear time-invariant state-space models | Dong 2018 after Hsu 2005 |
 //! | [`mechanics`] | what the body must do, what is expression: decouple, modulate, mix, blend | Boehs 2017 |
 //! | [`components`] | style components applied to a live pose or to a stored stream of weights | Phong 2018 |
@@ -56,6 +57,7 @@ pub mod mechanics;
 pub mod model;
 pub mod pipeline;
 pub mod pose;
+pub mod rig;
 pub mod translate;
 
 pub use components::{Components, ComponentsState};
@@ -66,6 +68,7 @@ pub use mechanics::{BodyMechanics, MechanicsState};
 pub use model::{LoadError, Pack};
 pub use pipeline::{Pipeline, PipelineState};
 pub use pose::{Pose, Skeleton};
+pub use rig::{Frame, Rig};
 pub use translate::{Translator, TranslatorState};
 
 /// The vectors and quaternions of poses.

@@ -17,18 +17,29 @@ pub struct Heading {
 }
 
 impl Default for Heading {
-    /// Facing +Z.
     fn default() -> Self {
-        Self { sin: 0.0, cos: 1.0 }
+        Self::FORWARD
     }
 }
 
 impl Heading {
+    /// Facing +Z.
+    pub const FORWARD: Self = Self { sin: 0.0, cos: 1.0 };
+
+    /// True if it is a direction.
+    pub(crate) fn is_sound(self) -> bool {
+        (0.9..1.1).contains(&(self.sin * self.sin + self.cos * self.cos))
+    }
+
     /// Heading of a pose: square to the horizontal part of the right-to-left axes (the hips, in most packs).
     ///
     /// Where these axes are vertical or of no length, `self` is kept: a body keeps its heading through a cartwheel.
     pub fn follow<const JOINTS: usize>(self, skeleton: &Skeleton, world: &World<JOINTS>) -> Self {
-        let across = across(skeleton.across, &world.positions);
+        self.square_to(across(skeleton.across, &world.positions))
+    }
+
+    /// Heading of a body whose right-to-left axis is `across`, world. Where that is vertical or of no length, `self` is kept.
+    pub fn square_to(self, across: Vector3<f32>) -> Self {
         let (x, z) = (across.x, across.z);
         let norm = sqrt(x * x + z * z);
         // Forward is across x up: (-z, x) in the ground plane.
