@@ -8,13 +8,13 @@
 //! | [`model`] | the pack: header check, typed views into borrowed bytes, errors | `docs/pack.md` |
 //! | [`pose`] | skeleton, pose, forward kinematics, heading, joint positions -> rotations | |
 //! | [`rig`] | coordinates: hinges, balls, sliders; pose -> frame of coordinates -> pose | |
+//! | [`engine`] | the seam: engines in series, side by side, between pose and pose | |
 //! | [`translate`] | style translation by linear time-invariant state-space models | Dong 2018 after Hsu 2005 |
 //! | [`mechanics`] | what the body must do, what is expression: decouple, modulate, mix, blend | Boehs 2017 |
 //! | [`components`] | style components applied to a live pose or to a stored stream of weights | Phong 2018 |
 //! | [`emotion`] | strength of an emotion -> keyframes -> spline -> pose | Chan 2019 |
 //! | [`face`] | strength of a facial expression -> landmarks | Chan 2019 |
 //! | [`limit`] | the last stage: frames at fault quarantined; position, velocity and acceleration limits | |
-//! | [`pipeline`] | everything that runs in a frame as one type with one step: engines, mix, limit | |
 //! | [`kernel`] | the few inner loops: matrix x vector, modal recursion, activations | |
 //!
 //! Units are metres, radians, seconds and frames; right-handed, Y up; a person who faces +Z has the left hand at +X.
@@ -50,23 +50,23 @@ compile_error!("packs are little-endian and used in place: kinesic needs a littl
 
 pub mod components;
 pub mod emotion;
+pub mod engine;
 pub mod face;
 pub mod kernel;
 pub mod limit;
 pub mod mechanics;
 pub mod model;
-pub mod pipeline;
 pub mod pose;
 pub mod rig;
 pub mod translate;
 
 pub use components::{Components, ComponentsState};
 pub use emotion::{Emotion, EmotionState};
+pub use engine::{Engine, Pipeline, PipelineState};
 pub use face::{FaceState, FaceSynth};
 pub use limit::{LimitState, LimitTable, Limiter};
 pub use mechanics::{BodyMechanics, MechanicsState};
 pub use model::{LoadError, Pack};
-pub use pipeline::{Pipeline, PipelineState};
 pub use pose::{Pose, Skeleton};
 pub use rig::{Frame, Rig};
 pub use translate::{Translator, TranslatorState};

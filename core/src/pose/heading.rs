@@ -2,7 +2,7 @@
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-use crate::kernel::sqrt;
+use crate::kernel::{quadrant_angle, sqrt};
 
 use super::skeleton::Across;
 use super::{Skeleton, World, unit};
@@ -74,6 +74,14 @@ impl Heading {
     /// Sine and cosine of the turn from `before` to `self`.
     pub fn turn_from(self, before: Self) -> [f32; 2] {
         [self.sin * before.cos - self.cos * before.sin, self.cos * before.cos + self.sin * before.sin]
+    }
+
+    /// Angle of the turn from `before` to `self`, -pi..pi, to the left.
+    pub(crate) fn angle_from(self, before: Self) -> f32 {
+        let [sin, cos] = self.turn_from(before);
+        let angle = quadrant_angle(sin.abs(), cos.abs(), 1.0);
+        let angle = if cos < 0.0 { core::f32::consts::PI - angle } else { angle };
+        if sin < 0.0 { -angle } else { angle }
     }
 
     /// The heading as a rotation about the vertical.

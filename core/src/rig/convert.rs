@@ -2,8 +2,12 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
+use super::model::Joint;
 use super::{Frame, Rig};
 use crate::pose::{Heading, Pose, unit};
+
+/// A root that goes farther in a frame, m, was put elsewhere.
+const LEAP: f32 = 0.5;
 
 /// How far a body has been carried away from where the source stands: engines change travel, and this is its sum, world, m.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -11,26 +15,22 @@ pub struct Drift {
     at: [f32; 2],
 }
 
+impl Drift {
+    /// Where the source stands.
+    pub const fn new() -> Self {
+        Self { at: [0.0; 2] }
+    }
+}
+
 impl Rig<'_> {
     /// The coordinates of a sound pose. `frame` holds those of the pose before, which decide the heading where a pose leaves it open,
     /// the turn of an angle, and the travel; begin with [`Frame::new`]. Cost: about 60 multiply-adds, a root and a division per ball.
     pub fn read<const JOINTS: usize, const ROWS: usize>(&self, pose: &Pose<JOINTS>, frame: &mut Frame<ROWS>) {
-        self.read_near(pose, core::iter::repeat([0.0; 3]), frame);
-    }
-
-    /// The same, where `middle` gives the middle of each joint's range: see [`Axes::coordinates`](super::Axes::coordinates).
-    pub(crate) fn read_near<const JOINTS: usize, const ROWS: usize>(
-        &self,
-        pose: &Pose<JOINTS>,
-        middle: impl Iterator<Item = [f32; 3]>,
-        frame: &mut Frame<ROWS>,
-    ) {
         let upright = self.place(pose, frame);
         let first = core::iter::once(upright.as_ref()).chain(core::iter::repeat(None));
-        let joints = self.iter().zip(pose.rotations.iter()).zip(middle);
-        for (((joint, local), middle), upright) in joints.zip(first) {
+        for ((joint, local), upright) in self.iter().zip(&pose.rotations).zip(first) {
             let last = joint.read(frame.coordinates());
-            let own = joint.coordinates(upright.unwrap_or(local), last, middle);
+            let own = joint.coordinates(upright.unwrap_or(local), last);
             joint.write(own, frame.coordinates_mut());
         }
     }
@@ -45,9 +45,13 @@ impl Rig<'_> {
         let root = pose.rotations.first()?;
         frame.heading = frame.heading.square_to(root * across);
         let ground = [pose.root.x, pose.root.z];
-        let [x, z] = if frame.started { frame.ground } else { ground };
-        let travel = frame.heading.to_local(Vector3::new(pose.root.x - x, 0.0, pose.root.z - z));
-        (frame.ground, frame.started) = (ground, true);
+        let [x, z] = if frame.known { frame.ground } else { ground };
+        let way = Vector3::new(pose.root.x - x, 0.0, pose.root.z - z);
+        let leaps = !frame.started || way.dot(&way) > LEAP * LEAP;
+        let (travel, leap) = if leaps { (Vector3::zeros(), way) } else { (way, Vector3::zeros()) };
+        let travel = frame.heading.to_local(travel);
+        (frame.ground, frame.leap) = (ground, [leap.x, leap.z]);
+        (frame.started, frame.known) = (true, true);
         if let Some(row) = frame.rows.first_mut() {
             *row = [travel.x, pose.root.y, travel.z];
         }
@@ -67,17 +71,43 @@ impl Rig<'_> {
     ) {
         *pose = *from;
         self.root(source, styled, drift, pose);
-        let turned = self.travels() && source.heading != styled.heading;
+        let turned = source.heading != styled.heading;
+        self.turn(styled, pose, |joint, first| {
+            let changed = joint.read(source.coordinates()) != joint.read(styled.coordinates());
+            changed || (first && turned)
+        });
+    }
+
+    /// The pose of `styled`, every joint that has coordinates; other joints stay as they are in `pose`. For a frame of its own making,
+    /// or where no pose came. Cost: as [`write`](Self::write) where everything changed.
+    pub fn show<const JOINTS: usize, const ROWS: usize>(
+        &self,
+        source: &Frame<ROWS>,
+        styled: &Frame<ROWS>,
+        drift: &mut Drift,
+        pose: &mut Pose<JOINTS>,
+    ) {
+        self.root(source, styled, drift, pose);
+        self.turn(styled, pose, |joint, _| joint.kind.coordinates() > 0);
+    }
+
+    /// Rotations of the joints that `which` names; of joint 0 it hears that it is the first.
+    fn turn<const JOINTS: usize, const ROWS: usize>(
+        &self,
+        styled: &Frame<ROWS>,
+        pose: &mut Pose<JOINTS>,
+        which: impl Fn(&Joint, bool) -> bool,
+    ) {
         for (index, (joint, rotation)) in self.iter().zip(&mut pose.rotations).enumerate() {
-            let (before, after) = (joint.read(source.coordinates()), joint.read(styled.coordinates()));
-            let of_heading = index == 0 && self.travels();
-            if before != after || (of_heading && turned) {
-                let local = joint.rotation(after);
-                *rotation = if of_heading { unit((styled.heading.rotation() * local).into_inner()) } else { local };
+            let upright = index == 0 && self.travels();
+            if which(&joint, upright) {
+                let local = joint.rotation(joint.read(styled.coordinates()));
+                *rotation = if upright { unit((styled.heading.rotation() * local).into_inner()) } else { local };
             }
         }
     }
 
+    /// Root and drift of a body that travels.
     fn root<const JOINTS: usize, const ROWS: usize>(
         &self,
         source: &Frame<ROWS>,
@@ -90,11 +120,11 @@ impl Rig<'_> {
         };
         let way = |heading: Heading, [x, _, z]: &[f32; 3]| heading.to_world(Vector3::new(*x, 0.0, *z));
         let change = way(styled.heading, after) - way(source.heading, before);
-        let [x, z] = drift.at;
-        drift.at = [x + change.x, z + change.z];
-        let [x, z] = drift.at;
-        let [_, height, _] = after;
-        pose.root = Vector3::new(pose.root.x + x, *height, pose.root.z + z);
+        let ([x, z], [to_x, to_z], [from_x, from_z]) = (drift.at, styled.leap, source.leap);
+        let [x, z] = [x + change.x + (to_x - from_x), z + change.z + (to_z - from_z)];
+        drift.at = [x, z];
+        let ([ground_x, ground_z], [_, height, _]) = (styled.ground, *after);
+        pose.root = Vector3::new(ground_x + x, height, ground_z + z);
     }
 }
 
@@ -118,7 +148,7 @@ mod tests {
     #[test]
     fn what_is_read_is_written_again() {
         let reference = [[0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 0.0, 1.0], [0.0, 0.6, 0.0, 0.8]];
-        let rig = Rig::new(&KINDS, &AXES, &reference, Some(&[1.0, 0.0, 0.0])).unwrap();
+        let rig = Rig::new(&KINDS, &AXES, &reference, &[[0.0; 3]; 3], Some(&[1.0, 0.0, 0.0])).unwrap();
         let (mut source, mut drift, mut out) = (Frame::<4>::new(), Drift::default(), Pose::identity());
         let mut travelled = Vector3::zeros();
         for step in 0..20 {
@@ -148,7 +178,7 @@ mod tests {
     #[test]
     fn changed_travel_adds_up_and_a_gap_is_none() {
         let reference = [[0.0, 0.0, 0.0, 1.0]; 3];
-        let rig = Rig::new(&KINDS, &AXES, &reference, Some(&[1.0, 0.0, 0.0])).unwrap();
+        let rig = Rig::new(&KINDS, &AXES, &reference, &[[0.0; 3]; 3], Some(&[1.0, 0.0, 0.0])).unwrap();
         let (mut source, mut drift, mut out) = (Frame::<4>::new(), Drift::default(), Pose::identity());
         for _ in 0..10 {
             let from = Pose::<3>::identity();
@@ -162,13 +192,17 @@ mod tests {
         let mut far = Pose::<3>::identity();
         far.root.x = 100.0;
         rig.read(&far, &mut source);
-        assert_eq!(source.rows[0][0], 0.0);
+        assert_eq!((source.rows[0][0], source.leap), (0.0, [100.0, 0.0]));
+        // A leap without a gap is a leap as well.
+        far.root.z = -1.0;
+        rig.read(&far, &mut source);
+        assert_eq!((source.rows[0], source.leap), ([0.0; 3], [0.0, -1.0]));
     }
 
     #[test]
     fn a_machine_that_stands_has_no_root() {
         let kinds = [JointKind::Hinge as u16; 3];
-        let rig = Rig::new(&kinds, &AXES, &[[0.0, 0.0, 0.0, 1.0]; 3], None).unwrap();
+        let rig = Rig::new(&kinds, &AXES, &[[0.0, 0.0, 0.0, 1.0]; 3], &[[0.0; 3]; 3], None).unwrap();
         let (mut source, mut out) = (Frame::<1>::new(), Pose::identity());
         let mut from = Pose::<3>::identity();
         from.rotations[1] = UnitQuaternion::from_scaled_axis(Vector3::new(-0.4, 0.0, 0.0));

@@ -11,14 +11,18 @@ pub struct Frame<const ROWS: usize> {
     pub heading: Heading,
     /// Point on the ground below the root, world, m: x and z. Engines leave it alone.
     pub ground: [f32; 2],
+    /// How far the body was put elsewhere since the last frame, world, m: no travel, but a way that limits have to bridge.
+    pub leap: [f32; 2],
     /// True once a pose was read: the next one has travelled from here.
     pub(super) started: bool,
+    /// True once a pose was read: `ground` means something.
+    pub(super) known: bool,
 }
 
 impl<const ROWS: usize> Frame<ROWS> {
     /// All coordinates 0, at the origin, facing +Z.
     pub const fn new() -> Self {
-        Self { rows: [[0.0; 3]; ROWS], heading: Heading::FORWARD, ground: [0.0; 2], started: false }
+        Self { rows: [[0.0; 3]; ROWS], heading: Heading::FORWARD, ground: [0.0; 2], leap: [0.0; 2], started: false, known: false }
     }
 
     /// A frame of coordinates in order, for a machine that stands: servo angles, say. Numbers past the rows are left out.
@@ -38,12 +42,16 @@ impl<const ROWS: usize> Frame<ROWS> {
         self.rows.as_flattened_mut()
     }
 
+    /// Numbers from here on are no coordinates.
+    pub(crate) const LARGEST: f32 = 1e6;
+
     /// True if every number is finite and below a million.
     pub fn is_sound(&self) -> bool {
-        self.coordinates().iter().chain(&self.ground).all(|x| x.abs() < 1e6) && self.heading.is_sound()
+        let numbers = self.coordinates().iter().chain(&self.ground).chain(&self.leap);
+        numbers.into_iter().all(|x| x.abs() < Self::LARGEST) && self.heading.is_sound()
     }
 
-    /// The next pose is taken to have stood where it is: a gap or a leap is no travel.
+    /// The next pose has not travelled: what it is farther on counts as a leap.
     pub fn forget_place(&mut self) {
         self.started = false;
     }

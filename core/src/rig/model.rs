@@ -12,6 +12,7 @@ pub struct Rig<'a> {
     kinds: &'a [u16],
     axes: &'a [[[f32; 3]; 3]],
     reference: &'a [[f32; 4]],
+    middle: &'a [[f32; 3]],
     /// Direction from the right hip to the left one in the root's frame; `None` for a machine that stands.
     pub(super) across: Option<Vector3<f32>>,
     rows: usize,
@@ -27,6 +28,8 @@ pub(crate) struct Joint {
     pub axes: Axes,
     /// Its local rotation at coordinates 0.
     pub reference: UnitQuaternion<f32>,
+    /// Middle of the range of each angle.
+    pub middle: [f32; 3],
 }
 
 impl<'a> Rig<'a> {
@@ -38,6 +41,7 @@ impl<'a> Rig<'a> {
             pack.slice("rig/kinds", joints)?,
             pack.slice("rig/axes", joints)?,
             pack.slice("rig/reference", joints)?,
+            pack.slice("rig/middle", joints)?,
             across.first(),
         )
     }
@@ -48,11 +52,13 @@ impl<'a> Rig<'a> {
     /// - `axes`: three axes in the frame that `reference` turns, of length one and at right angles; a hinge uses the first alone, a
     ///   ball none
     /// - `reference`: local rotation `[i, j, k, w]` of each joint at coordinates 0
+    /// - `middle`: middle of the range of each angle, rad: an angle is that of all equal ones which is nearest to it
     /// - `across`: direction from the right hip to the left one in the root's frame, for a body that travels. Joint 0 is then a ball
     pub fn new(
         kinds: &'a [u16],
         axes: &'a [[[f32; 3]; 3]],
         reference: &'a [[f32; 4]],
+        middle: &'a [[f32; 3]],
         across: Option<&[f32; 3]>,
     ) -> Result<Self, LoadError> {
         let joints = kinds.len();
@@ -66,15 +72,17 @@ impl<'a> Rig<'a> {
         }
         count("rig/axes", axes.len())?;
         count("rig/reference", reference.len())?;
+        count("rig/middle", middle.len())?;
         value("rig/kinds", kinds.iter().position(|code| JointKind::from_code(*code).is_none()))?;
         value("rig/reference", reference.iter().position(|q| !is_one(q.iter().map(|x| x * x).sum())))?;
         value("rig/axes", axes.iter().zip(kinds).position(|(axes, kind)| !are_axes(axes, *kind)))?;
+        value("rig/middle", middle.iter().position(|x| !x.iter().all(|x| x.abs() < 100.0)))?;
         let across = across.map(|across| Vector3::from(*across));
         if let Some(across) = across {
             value("rig/across", (!is_one(across.dot(&across))).then_some(0))?;
             value("rig/kinds", (kinds.first() != Some(&(JointKind::Ball as u16))).then_some(0))?;
         }
-        let mut rig = Self { kinds, axes, reference, across, rows: 0 };
+        let mut rig = Self { kinds, axes, reference, middle, across, rows: 0 };
         rig.rows = rig.coordinates().div_ceil(3);
         Ok(rig)
     }
@@ -112,12 +120,13 @@ impl<'a> Rig<'a> {
     }
 
     pub(crate) fn iter(&self) -> impl Iterator<Item = Joint> + use<'a> {
-        let tables = self.axes.iter().zip(self.reference);
-        self.places().zip(tables).map(|((kind, first), (axes, [i, j, k, w]))| Joint {
+        let tables = self.axes.iter().zip(self.reference).zip(self.middle);
+        self.places().zip(tables).map(|((kind, first), ((axes, [i, j, k, w]), middle))| Joint {
             kind,
             first,
             axes: Axes::new(axes),
             reference: UnitQuaternion::new_unchecked(Quaternion::new(*w, *i, *j, *k)),
+            middle: *middle,
         })
     }
 }
@@ -132,10 +141,13 @@ impl Joint {
     }
 
     /// The coordinates of a local rotation: see [`Axes::coordinates`].
-    pub fn coordinates(&self, local: &UnitQuaternion<f32>, last: [f32; 3], middle: [f32; 3]) -> [f32; 3] {
+    pub fn coordinates(&self, local: &UnitQuaternion<f32>, last: [f32; 3]) -> [f32; 3] {
         match self.kind {
             JointKind::Fixed | JointKind::Slider => last,
-            kind => self.axes.coordinates(kind, &unit((self.reference.inverse() * local).into_inner()), last, middle),
+            kind => {
+                let from = unit((self.reference.inverse() * local).into_inner());
+                self.axes.coordinates(kind, &from, last, self.middle)
+            }
         }
     }
 
@@ -182,12 +194,12 @@ mod tests {
     fn hinges_share_rows_and_balls_begin_one() {
         use JointKind::{Ball, Fixed, Hinge, Slider};
         let kinds = [Hinge, Hinge, Ball, Fixed, Hinge, Slider, Hinge, Hinge].map(|kind| kind as u16);
-        let rig = Rig::new(&kinds, &[AXES; 8], &[REST; 8], None).unwrap();
+        let rig = Rig::new(&kinds, &[AXES; 8], &[REST; 8], &[[0.0; 3]; 8], None).unwrap();
         let first: [usize; 8] = core::array::from_fn(|joint| rig.places().nth(joint).unwrap().1);
         assert_eq!(first, [0, 1, 3, 6, 6, 7, 8, 9]);
         assert_eq!((rig.coordinates(), rig.rows()), (10, 4));
         let body = [Ball, Ball, Hinge].map(|kind| kind as u16);
-        let rig = Rig::new(&body, &[AXES; 3], &[REST; 3], Some(&[1.0, 0.0, 0.0])).unwrap();
+        let rig = Rig::new(&body, &[AXES; 3], &[REST; 3], &[[0.0; 3]; 3], Some(&[1.0, 0.0, 0.0])).unwrap();
         assert_eq!((rig.places().nth(2).unwrap().1, rig.rows()), (9, 4));
     }
 
@@ -195,7 +207,7 @@ mod tests {
     fn tables_that_make_no_rig_are_refused_by_name() {
         let hinge = [JointKind::Hinge as u16; 2];
         let refused = |kinds: &[u16], axes: &[[[f32; 3]; 3]], reference: &[[f32; 4]], across: Option<&[f32; 3]>| {
-            Rig::new(kinds, axes, reference, across).unwrap_err()
+            Rig::new(kinds, axes, reference, &[[0.0; 3]; 2][..kinds.len()], across).unwrap_err()
         };
         let value = |tensor, index| LoadError::Value { tensor, index };
         assert_eq!(refused(&[1, 9], &[AXES; 2], &[REST; 2], None), value("rig/kinds", 1));

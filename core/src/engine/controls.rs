@@ -1,0 +1,42 @@
+//! What the user of a running model may turn.
+
+use crate::rig::Frame;
+
+/// Strength and mask; they may change at any frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Controls<const ROWS: usize> {
+    /// 0 = the source, 1 = the learned style, beyond = exaggerated. The pack states a plausible range. One that is not finite counts as 0.
+    pub strength: f32,
+    /// Weight of each coordinate, 0 = the source's, 1 = the styled one. One that is not finite counts as 0.
+    pub mask: [[f32; 3]; ROWS],
+}
+
+impl<const ROWS: usize> Controls<ROWS> {
+    /// Full strength, all joints.
+    pub const fn new() -> Self {
+        Self { strength: 1.0, mask: [[1.0; 3]; ROWS] }
+    }
+
+    /// `x + strength mask (y - x)` for the first `rows` rows of a frame `x`. False, and nothing has changed, if that is not sound.
+    /// Cost: 2 multiply-adds per coordinate.
+    pub(crate) fn apply(&self, styled: &[[f32; 3]; ROWS], frame: &mut Frame<ROWS>, rows: usize) -> bool {
+        let mut out = *frame;
+        let coordinates = out.rows.iter_mut().zip(styled).zip(&self.mask).take(rows);
+        for ((x, y), weight) in coordinates.flat_map(|((x, y), weight)| x.iter_mut().zip(y).zip(weight)) {
+            let weight = self.strength * weight;
+            let weight = if weight.is_finite() { weight } else { 0.0 };
+            *x += weight * (y - *x);
+        }
+        let sound = out.is_sound();
+        if sound {
+            *frame = out;
+        }
+        sound
+    }
+}
+
+impl<const ROWS: usize> Default for Controls<ROWS> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
