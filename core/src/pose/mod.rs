@@ -3,13 +3,11 @@
 //! Rotations are unit quaternions, local to the parent; the root's is relative to the world. Only `+ - * /` and square
 //! roots are used, all correctly rounded, so results have the same bits on every IEEE 754 machine.
 
-mod controls;
 mod forward;
 mod heading;
 mod skeleton;
 mod solve;
 
-pub use controls::Controls;
 pub use forward::{World, forward};
 pub use heading::{Heading, local_positions};
 pub use skeleton::Skeleton;
