@@ -4,7 +4,7 @@ use crate::align::{self, AlignError, Ends, Series, Settings, Warp, aligned_path}
 use crate::clip::Canonical;
 use crate::rig::{Locals, Rig};
 
-use super::dataset::{Correspondence, mirror_rows};
+use super::dataset::{Correspondence, mirror_positions};
 
 /// How the frames of two clips are brought together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,7 +56,7 @@ pub fn correspond(
         }
         Alignment::Uniform => Ok(uniform(source.frames(), target.frames())),
         Alignment::InStep => phase(&target.positions, OPEN),
-        Alignment::Opposite => phase(&mirror_rows(&target.positions, partners), OPEN),
+        Alignment::Opposite => phase(&mirror_positions(&target.positions, partners), OPEN),
     }
 }
 

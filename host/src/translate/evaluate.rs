@@ -86,7 +86,7 @@ pub fn evaluate(pack: &Pack, rig: &Rig, baselines: &Baselines, pairs: &[NamedPai
         let poses = rig.poses(pair.source.1);
         let source = rig.locals(&poses).positions;
         let target = rig.locals(&rig.poses(pair.target.1)).positions;
-        let styled = rig.locals(&play(pack, &poses, &Settings::default())?).positions;
+        let styled = rig.locals(&play(pack, rig, &poses, &Settings::default())?).positions;
         let offset = baseline::apply_offset(baselines, &source);
         let affine = baseline::apply_affine(baselines, &source);
         let distance = |positions: &[f64], ends| -> Result<f64, AlignError> {

@@ -2,8 +2,14 @@
 
 use kinesic::model::LoadError;
 use kinesic::pose::{Heading, World, forward, local_positions};
-use kinesic::{Pack, Pose, Skeleton as DeviceSkeleton};
+use kinesic::rig::Drift;
+use kinesic::{Frame, Pack, Pose, Rig as DeviceRig, Skeleton as DeviceSkeleton};
 use nalgebra::Vector3;
+
+use coordinates::Coordinates;
+pub use coordinates::JointCoordinates;
+
+mod coordinates;
 
 use crate::clip::map::CANONICAL;
 use crate::clip::{Canonical, Clip, Joint, JointMap, Skeleton};
@@ -11,6 +17,12 @@ use crate::pack::PackWriter;
 
 /// Capacity of the poses that the host steps; a rig has at most this many joints.
 pub const MAX_JOINTS: usize = 128;
+
+/// Capacity of the frames that the host steps: a row per joint, and the root's.
+pub const MAX_ROWS: usize = MAX_JOINTS + 1;
+
+/// A frame at the host's capacity.
+pub type HostFrame = Frame<MAX_ROWS>;
 
 /// Bones shorter than this have no direction, m.
 const SHORTEST_BONE: f64 = 1e-4;
@@ -54,6 +66,7 @@ pub struct Rig {
     offsets: Vec<[f32; 3]>,
     aims: Vec<[u16; 2]>,
     across: Vec<[u16; 2]>,
+    coordinates: Coordinates,
 }
 
 impl Rig {
@@ -74,12 +87,109 @@ impl Rig {
             parents: skeleton.joints.iter().map(|j| j.parent.unwrap_or(0) as u16).collect(),
             offsets: skeleton.joints.iter().map(|j| j.offset.map(|x| x as f32).into()).collect(),
             aims: aims(skeleton),
+            coordinates: Coordinates::balls(joints, hips_axis(skeleton, map)),
             across,
             skeleton: skeleton.clone(),
             map: map.clone(),
         };
         rig.checked()?;
+        rig.coordinates.checked()?;
         Ok(rig)
+    }
+
+    /// The same skeleton with other coordinates: one entry per joint.
+    pub fn with_coordinates(&self, joints: Vec<JointCoordinates>) -> Result<Self, LoadError> {
+        let coordinates = Coordinates::new(&joints, self.coordinates.across);
+        coordinates.checked()?;
+        Ok(Self { coordinates, ..self.clone() })
+    }
+
+    /// The coordinates of every joint.
+    pub fn joint_coordinates(&self) -> Vec<JointCoordinates> {
+        self.coordinates.joints()
+    }
+
+    /// The same skeleton with coordinates about the mean of these clips: a joint that never moves has none, any other is a ball. Left
+    /// and right joints have references that are mirror images of each other.
+    pub fn centred(&self, clips: &[&[Pose<MAX_JOINTS>]]) -> Self {
+        let joints = coordinates::centred(self, clips);
+        let coordinates = Coordinates::new(&joints, self.coordinates.across);
+        Self { coordinates, ..self.clone() }
+    }
+
+    /// Whether the left side is the mirror image of the right one, so that coordinates can be mirrored: every bone within 20 degrees.
+    pub fn is_symmetrical(&self) -> bool {
+        let joints = &self.skeleton.joints;
+        joints.iter().enumerate().all(|(index, joint)| {
+            let partner = self.map.mirror_partner(index).unwrap_or(index);
+            let image = Vector3::new(-joints[partner].offset.x, joints[partner].offset.y, joints[partner].offset.z);
+            joint.offset.norm() < 0.01 || joint.offset.angle(&image) < 20f64.to_radians()
+        })
+    }
+
+    /// The device's coordinates.
+    pub fn frames(&self) -> DeviceRig<'_> {
+        // Checked when the rig was made, and never changed since.
+        self.coordinates.checked().unwrap_or_else(|error| unreachable!("checked coordinates are refused: {error}"))
+    }
+
+    /// Rows of a frame.
+    pub fn rows(&self) -> usize {
+        self.frames().rows()
+    }
+
+    /// The frames of poses, read as the device reads them.
+    pub fn read(&self, poses: &[Pose<MAX_JOINTS>]) -> Vec<HostFrame> {
+        let rig = self.frames();
+        let mut frame = HostFrame::new();
+        let read = |pose: &Pose<MAX_JOINTS>| {
+            rig.read(pose, &mut frame);
+            frame
+        };
+        poses.iter().map(read).collect()
+    }
+
+    /// What `turn` makes of every pose's frame, written as the device writes it.
+    pub fn restyle(
+        &self,
+        poses: &[Pose<MAX_JOINTS>],
+        mut turn: impl FnMut(&mut HostFrame),
+    ) -> Vec<Pose<MAX_JOINTS>> {
+        let rig = self.frames();
+        let (mut source, mut drift) = (HostFrame::new(), Drift::new());
+        let styled = poses.iter().map(|pose| {
+            rig.read(pose, &mut source);
+            let mut styled = source;
+            turn(&mut styled);
+            let mut out = Pose::identity();
+            rig.write(&source, &styled, &mut drift, pose, &mut out);
+            out
+        });
+        styled.collect()
+    }
+
+    /// Heading-local positions, m, `[frames x 3 joints]`, of rows of coordinates `[frames x 3 rows]`; the root's is `[0, height, 0]`.
+    pub fn positions(&self, rows: &[f64]) -> Vec<f64> {
+        let (rig, skeleton) = (self.frames(), self.device());
+        let mut world = World::<MAX_JOINTS>::identity();
+        let mut positions = Vec::with_capacity(rows.len());
+        for row in rows.chunks_exact(3 * rig.rows()) {
+            let mut frame = HostFrame::new();
+            frame.coordinates_mut().iter_mut().zip(row).for_each(|(to, from)| *to = *from as f32);
+            let mut pose = Pose::identity();
+            rig.show(&frame, &frame, &mut Drift::new(), &mut pose);
+            forward(&skeleton, &pose, &mut world);
+            let heading = Heading::default().follow(&skeleton, &world);
+            let local = local_positions(&skeleton, &world, heading);
+            positions.extend(local[..self.joints()].as_flattened().iter().map(|x| f64::from(*x)));
+        }
+        positions
+    }
+
+    /// How far a unit of each coordinate moves what hangs on it, m per rad or m: the root of the summed squares over the joints and
+    /// end sites below, at coordinates 0. Where little hangs on a joint it is a hand's length, so that heads and hands count.
+    pub fn levers(&self) -> Vec<f64> {
+        coordinates::levers(self)
     }
 
     /// The device's view, checked.
@@ -98,8 +208,9 @@ impl Rig {
         self.parents.len()
     }
 
-    /// Writes the skeleton's tables.
+    /// Writes the tables of skeleton and coordinates.
     pub fn write(&self, pack: &mut PackWriter) {
+        self.coordinates.write(pack);
         for joint in &self.skeleton.joints {
             pack.joint(&joint.name, joint.parent.map(|p| p as u16));
         }
@@ -133,7 +244,8 @@ impl Rig {
         let known: &[[u16; CANONICAL]] = pack.slice("skeleton/canonical", 1)?;
         let indices = known[0].map(|joint| (joint != UNKNOWN).then_some(usize::from(joint)));
         let map = JointMap::from_indices("pack", indices, &skeleton);
-        Self::new(&skeleton, &map)
+        let rig = Self::new(&skeleton, &map)?;
+        Ok(rig.with_coordinates(coordinates::of_pack(pack)?)?)
     }
 
     /// The poses of a clip on this rig (same joints in the same order; see [`retarget`](crate::retarget)).
@@ -168,22 +280,19 @@ impl Rig {
         }
     }
 
-    /// Heading-local positions as the device computes them, and the root's travel.
+    /// Positions and coordinates as the device computes them.
     pub fn locals(&self, poses: &[Pose<MAX_JOINTS>]) -> Locals {
         let skeleton = self.device();
         let mut heading = Heading::default();
         let mut world = World::<MAX_JOINTS>::identity();
-        let mut locals =
-            Locals { joints: self.joints(), positions: Vec::new(), travel: Vec::with_capacity(poses.len()) };
-        let mut last = poses.first().map_or_else(Vector3::zeros, |pose| pose.root);
-        for pose in poses {
+        let rows = self.rows();
+        let mut locals = Locals { joints: self.joints(), positions: Vec::new(), rows, coordinates: Vec::new() };
+        for (pose, frame) in poses.iter().zip(self.read(poses)) {
             forward(&skeleton, pose, &mut world);
             heading = heading.follow(&skeleton, &world);
-            let rows = local_positions(&skeleton, &world, heading);
-            locals.positions.extend(rows[..self.joints()].as_flattened().iter().map(|x| f64::from(*x)));
-            let travel = heading.to_local(pose.root - last);
-            locals.travel.push([f64::from(travel.x), f64::from(travel.z)]);
-            last = pose.root;
+            let positions = local_positions(&skeleton, &world, heading);
+            locals.positions.extend(positions[..self.joints()].as_flattened().iter().map(|x| f64::from(*x)));
+            locals.coordinates.extend(frame.coordinates()[..3 * rows].iter().map(|x| f64::from(*x)));
         }
         locals
     }
@@ -196,20 +305,30 @@ pub struct Locals {
     pub joints: usize,
     /// Heading-local positions, m, row-major `[frames x 3 joints]`; the root's is `[0, height, 0]`.
     pub positions: Vec<f64>,
-    /// Heading-local horizontal travel of the root since the last frame, m, `[frames]` of `[x, z]`.
-    pub travel: Vec<[f64; 2]>,
+    /// Rows of a frame.
+    pub rows: usize,
+    /// Coordinates, rad or m, `[frames x 3 rows]`; see [`kinesic::rig`].
+    pub coordinates: Vec<f64>,
 }
 
 impl Locals {
     /// Number of frames.
     pub fn frames(&self) -> usize {
-        self.travel.len()
+        self.positions.len() / self.channels().max(1)
     }
 
-    /// Values of one frame.
+    /// Positions of one frame: 3 per joint.
     pub fn channels(&self) -> usize {
         3 * self.joints
     }
+}
+
+/// Direction from the right hip to the left one at rest, in the root's frame.
+fn hips_axis(skeleton: &Skeleton, map: &JointMap) -> Option<[f32; 3]> {
+    let rest = skeleton.rest_positions();
+    let [left, right] = [map.joint(Canonical::LHip)?, map.joint(Canonical::RHip)?].map(|joint| rest[joint]);
+    let axis = (left - right).try_normalize(1e-6)?;
+    Some(axis.map(|x| x as f32).into())
 }
 
 /// Which bones turn which joint: `[joint, descendant]`, in order of the joint.
