@@ -7,15 +7,15 @@ pub use translator::to_int16;
 use kinesic::kernel::{LARGEST_ACTIVATION, MOST_COLUMNS, PRE_ACTIVATION_BITS, ROWS, TILE};
 use kinesic::mechanics::{Decoupled, FEATURES, INPUT_SCALE, OUTPUT_BITS};
 use kinesic::model::{LoadError, TensorType};
-use kinesic::{MechanicsState, Pack, Pose, TranslatorState};
+use kinesic::{MechanicsState, Pack, Pose};
 
 use nalgebra::UnitQuaternion;
 use serde::Serialize;
 
 use crate::mechanics::HostMechanics;
 use crate::pack::{PackFile, PackWriter, Provenance};
-use crate::rig::MAX_JOINTS;
-use crate::translate::HostTranslator;
+use crate::rig::{MAX_JOINTS, Rig};
+use crate::translate::{self, play};
 
 /// Largest size of a weight in int8.
 const LARGEST_WEIGHT: f64 = 127.0;
@@ -230,22 +230,14 @@ pub fn difference(before: &Pack, after: &Pack, clips: &[Vec<Pose<MAX_JOINTS>>]) 
 pub fn translated_difference(
     before: &Pack,
     after: &Pack,
+    rig: &Rig,
     clips: &[Vec<Pose<MAX_JOINTS>>],
 ) -> Result<Difference, LoadError> {
-    let mut angles = Angles::new(before.metadata().joints.len());
-    let (first, second) = (HostTranslator::load(before)?, HostTranslator::load(after)?);
-    let mut states = [Box::new(TranslatorState::new()), Box::new(TranslatorState::new())];
-    let (mut a, mut b) = (Pose::identity(), Pose::identity());
+    let mut angles = Angles::new(rig.joints());
+    let settings = translate::Settings::default();
     for poses in clips {
-        if let Some(pose) = poses.first() {
-            first.start(&mut states[0], pose);
-            second.start(&mut states[1], pose);
-        }
-        for pose in poses {
-            first.step(&mut states[0], pose, &mut a);
-            second.step(&mut states[1], pose, &mut b);
-            angles.add(&a, &b);
-        }
+        let (first, second) = (play(before, rig, poses, &settings)?, play(after, rig, poses, &settings)?);
+        first.iter().zip(&second).for_each(|(a, b)| angles.add(a, b));
     }
     Ok(angles.finish())
 }
