@@ -3,14 +3,14 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use kinesic::{Pose, TranslatorState};
+use kinesic::{Pipeline, PipelineState, Pose};
 use kinesic_host::clip::{Canonical, Clip, JointMap};
 use kinesic_host::gait::{Manner, walk};
 use kinesic_host::mechanics::decouple;
 use kinesic_host::models;
 use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_host::retarget::retarget;
-use kinesic_host::rig::{MAX_JOINTS, Rig};
+use kinesic_host::rig::{MAX_JOINTS, MAX_ROWS, Rig};
 use kinesic_host::translate::{
     FormChoice, HostTranslator, NamedPair, TrainOptions, TrainPair, evaluate, plausible, train,
 };
@@ -82,6 +82,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
         (made(&Manner::NEUTRAL, 0.3, 3), made(&Manner::WEARY, 0.3, 4), made(&Manner::WEARY, 0.3, 5));
     let map = JointMap::detect(&neutral.skeleton).ok_or_else(|| miette!("the made skeleton is not known"))?;
     let rig = Rig::new(&neutral.skeleton, &map).into_diagnostic()?;
+    let rig = rig.centred(&[&rig.poses(&neutral), &rig.poses(&weary)]);
     let locals = |clip: &Clip| rig.locals(&rig.poses(clip));
     let pair = TrainPair {
         source_name: "neutral.bvh".into(),
@@ -113,7 +114,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let pack = file.pack().into_diagnostic()?;
     let translator = HostTranslator::load(&pack).into_diagnostic()?;
     let source = rig.poses(&unseen);
-    let (styled, microseconds) = play_timed(&translator, &source);
+    let (styled, microseconds) = play_timed(&translator, &rig, &source)?;
     let report = evaluate(
         &pack,
         &rig,
@@ -155,21 +156,26 @@ pub fn run(args: &Args) -> miette::Result<()> {
 }
 
 /// Plays frame by frame; time of a frame is the median of five passes.
-fn play_timed(translator: &HostTranslator, source: &[Pose<MAX_JOINTS>]) -> (Vec<Pose<MAX_JOINTS>>, f64) {
+fn play_timed(
+    translator: &HostTranslator,
+    rig: &Rig,
+    source: &[Pose<MAX_JOINTS>],
+) -> miette::Result<(Vec<Pose<MAX_JOINTS>>, f64)> {
     let mut styled = vec![Pose::identity(); source.len()];
+    let pipeline = Pipeline::<_, MAX_ROWS>::new(rig.frames(), *translator).into_diagnostic()?;
     let mut passes: Vec<f64> = (0..5)
         .map(|_| {
-            let mut state = Box::new(TranslatorState::new());
-            translator.start(&mut state, &source[0]);
+            let mut state = Box::new(PipelineState::new());
+            pipeline.start(&mut state, &source[0]);
             let begin = Instant::now();
             for (pose, out) in source.iter().zip(&mut styled) {
-                translator.step(&mut state, pose, out);
+                pipeline.step(&mut state, Some(pose), out);
             }
             begin.elapsed().as_secs_f64() * 1e6 / source.len() as f64
         })
         .collect();
     passes.sort_by(f64::total_cmp);
-    (styled, passes[2])
+    Ok((styled, passes[2]))
 }
 
 /// Two takes of the same manner: no translation can be expected to come nearer.
@@ -215,13 +221,13 @@ fn print(s: &Summary, folder: &Path) {
     println!("Aligned RMS joint distance to the weary walk that belongs to it, cm:");
     println!("  doing nothing            {:6.2}", s.identity_cm);
     println!("  mean offset              {:6.2}", s.offset_cm);
-    println!("  affine map a joint       {:6.2}", s.affine_cm);
+    println!("  affine map per joint     {:6.2}", s.affine_cm);
     println!("  kinesic                  {:6.2}", s.error_cm);
     println!("  another take (floor)     {:6.2}", s.floor_cm);
     println!("Pack                       {:6} bytes", s.pack_bytes);
-    println!("Multiply-adds a frame      {:6} and kinematics", s.multiply_adds_per_frame);
+    println!("Multiply-adds per frame    {:6} and the rig's", s.multiply_adds_per_frame);
     println!(
-        "Time a frame on this host  {:6.1} us ({} frames, median of 5 passes)",
+        "Time per frame, this host  {:6.1} us ({} frames, median of 5 passes)",
         s.microseconds_per_frame, s.frames
     );
     println!();

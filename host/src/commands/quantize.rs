@@ -152,7 +152,7 @@ fn measure(
     }
     let found = match precision {
         Precision::I8 => difference(before, after, &clips),
-        _ => translated_difference(before, after, &clips),
+        _ => translated_difference(before, after, &rig, &clips),
     };
     found.into_diagnostic()
 }

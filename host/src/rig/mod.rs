@@ -149,6 +149,20 @@ impl Rig {
         poses.iter().map(read).collect()
     }
 
+    /// The weight of every coordinate from that of its joint; the root's row goes with joint 0.
+    pub fn coordinate_weights(&self, joints: &[f32; MAX_JOINTS]) -> [[f32; 3]; MAX_ROWS] {
+        let mut weights = [[1.0; 3]; MAX_ROWS];
+        let flat = weights.as_flattened_mut();
+        let rig = self.frames();
+        if rig.travels() {
+            flat[..3].fill(joints[0]);
+        }
+        for ((kind, first), weight) in rig.places().zip(joints) {
+            flat[first..first + kind.coordinates()].fill(*weight);
+        }
+        weights
+    }
+
     /// What `turn` makes of every pose's frame, written as the device writes it.
     pub fn restyle(
         &self,

@@ -120,18 +120,20 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let fps = args.fps.unwrap_or_else(|| common_rate(sources.iter().flat_map(|(a, b)| [&a.clip, &b.clip])));
     let rig = sources[0].0.rig().into_diagnostic()?;
     let on_rig = |source: &Source| source.on_rig(&rig, fps).into_diagnostic();
-    let mut pairs = Vec::new();
-    let mut clips = Vec::new();
-    for (source, target) in &sources {
-        let (neutral, styled) = (on_rig(source)?, on_rig(target)?);
-        pairs.push(TrainPair {
-            source_name: source.name(),
-            target_name: target.name(),
-            source: rig.locals(&rig.poses(&neutral)),
-            target: rig.locals(&rig.poses(&styled)),
-        });
-        clips.push((neutral, styled));
-    }
+    let clips =
+        sources.iter().map(|(a, b)| Ok((on_rig(a)?, on_rig(b)?))).collect::<miette::Result<Vec<(Clip, Clip)>>>()?;
+    let poses = |clips: &mut dyn Iterator<Item = &Clip>| clips.map(|clip| rig.poses(clip)).collect::<Vec<_>>();
+    let source_poses = poses(&mut clips.iter().map(|(neutral, _)| neutral));
+    let target_poses = poses(&mut clips.iter().map(|(_, styled)| styled));
+    let all: Vec<_> = source_poses.iter().chain(&target_poses).map(Vec::as_slice).collect();
+    let rig = rig.centred(&all);
+    let pair = |((source, target), (neutral, styled)): (&(Source, Source), (&Vec<_>, &Vec<_>))| TrainPair {
+        source_name: source.name(),
+        target_name: target.name(),
+        source: rig.locals(neutral),
+        target: rig.locals(styled),
+    };
+    let pairs: Vec<TrainPair> = sources.iter().zip(source_poses.iter().zip(&target_poses)).map(pair).collect();
     let style = args.style.clone().unwrap_or_else(|| file_stem(&args.out));
     let prints: Vec<InputFile> = paths
         .iter()
@@ -170,12 +172,9 @@ pub fn run(args: &Args) -> miette::Result<()> {
         notes: notes(&trained),
         baselines: trained.baselines.clone(),
     };
-    let poses = |clips: &mut dyn Iterator<Item = &Clip>| clips.map(|clip| rig.poses(clip)).collect::<Vec<_>>();
     let preview = PackFile::from_bytes(&args.precision.of(trained.model.pack(&rig, &provenance), &provenance)?);
-    let sources = poses(&mut clips.iter().map(|(neutral, _)| neutral));
-    let targets = poses(&mut clips.iter().map(|(_, styled)| styled));
     trained.model.strength =
-        plausible(&preview.pack().into_diagnostic()?, &rig, &sources, &targets).into_diagnostic()?;
+        plausible(&preview.pack().into_diagnostic()?, &rig, &source_poses, &target_poses).into_diagnostic()?;
     let report = evaluate(&preview.pack().into_diagnostic()?, &rig, &trained.baselines, &named).into_diagnostic()?;
     provenance.metrics = metrics(&trained, &report);
     let bytes = args.precision.of(trained.model.pack(&rig, &provenance), &provenance)?;
