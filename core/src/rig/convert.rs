@@ -91,6 +91,14 @@ impl Rig<'_> {
         self.turn(styled, pose, |joint, _| joint.kind.coordinates() > 0);
     }
 
+    /// The pose at coordinates 0, at the origin: where a pose that came from nowhere begins, since [`show`](Self::show) leaves
+    /// joints without coordinates alone.
+    pub fn rest<const JOINTS: usize>(&self) -> Pose<JOINTS> {
+        let mut pose = Pose::identity();
+        pose.rotations.iter_mut().zip(self.iter()).for_each(|(rotation, joint)| *rotation = joint.reference);
+        pose
+    }
+
     /// Rotations of the joints that `which` names; of joint 0 it hears that it is the first.
     fn turn<const JOINTS: usize, const ROWS: usize>(
         &self,

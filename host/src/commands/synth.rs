@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use kinesic::model::AttributeMeta;
 use kinesic_host::emotion::HostEmotion;
-use kinesic_host::emotion::play::{Settings, Strengths, play, score};
+use kinesic_host::emotion::evaluate::Scorer;
+use kinesic_host::emotion::play::{Settings, Strengths, play};
 use kinesic_host::pack::PackFile;
-use kinesic_host::rig::Rig;
 use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
 
@@ -53,8 +53,8 @@ struct Attribute {
     asked: [f32; 2],
     /// What played: asked for, held inside the range.
     played: [f32; 2],
-    /// What the ranking function says of the keyframes.
-    score: [f32; 2],
+    /// What the ranking function reads from the motion that stays at these strengths.
+    score: [f64; 2],
     plausible: [f32; 2],
 }
 
@@ -91,10 +91,10 @@ pub fn run(args: &Args) -> miette::Result<()> {
         return Err(miette!("--seconds: expected more than 0, at most 3600"));
     }
     let played = play(&pack, &Settings { from, to, fps, seconds: args.seconds }).into_diagnostic()?;
-    let rig = Rig::from_pack(&pack).into_diagnostic()?;
-    rig.clip(&played.poses, 1.0 / fps).write(&args.out).into_diagnostic()?;
+    let scorer = Scorer::load(&pack).into_diagnostic()?;
+    let scores = [scorer.made(&pack, &from).into_diagnostic()?, scorer.made(&pack, &to).into_diagnostic()?];
+    scorer.rig.clip(&played.poses, 1.0 / fps).write(&args.out).into_diagnostic()?;
 
-    let scores = [score(&pack, &from).into_diagnostic()?, score(&pack, &to).into_diagnostic()?];
     let both = |of: [Strengths; 2], at: usize| of.map(|strengths| strengths[at]);
     let travel = match (played.poses.first(), played.poses.last()) {
         (Some(first), Some(last)) => (last.root - first.root).xz().norm(),
@@ -116,7 +116,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
                 name: attribute.name.to_owned(),
                 asked: both([from, to], at),
                 played: both(played.strength, at),
-                score: both(scores, at),
+                score: scores.each_ref().map(|scores| scores[at]),
                 plausible: attribute.strength,
             })
             .collect(),
@@ -137,13 +137,14 @@ fn print(summary: &Summary) {
     );
     println!("attribute            asked             played             scores     of plausible");
     let two = |[a, b]: [f32; 2]| format!("{a:.3} .. {b:.3}");
+    let scores = |[a, b]: [f64; 2]| format!("{a:.3} .. {b:.3}");
     for attribute in &summary.attributes {
         println!(
             "{:<12} {:>16}   {:>16}   {:>16}   {:>14}",
             attribute.name,
             two(attribute.asked),
             two(attribute.played),
-            two(attribute.score),
+            scores(attribute.score),
             two(attribute.plausible)
         );
         if attribute.asked != attribute.played {

@@ -7,7 +7,8 @@
 //! | [`segment`] | clips -> motions: whole, or cycle by cycle |
 //! | [`motions`] | labelled clips, cut, with their pairs |
 //! | [`keyframes`] | the moments between which the spline draws all motions best |
-//! | [`features`] | keyframes -> positions and velocities -> principal components |
+//! | [`features`] | keyframes -> positions and velocities -> principal components, by which motions are ranked |
+//! | [`coordinates`] | keyframes -> coordinates and velocities, of which motions are made |
 //! | [`mod@rank`] | the ranking function: primal Newton over a graph of pairs; faces use it too |
 //! | [`Curvature`] | what its Hessian needs of the samples |
 //! | `pairs`, [`choose_cost`] | which motion shows more than which; the cost by validation |
@@ -19,6 +20,7 @@
 //! | [`made`] | a made model for tests and firmware workloads |
 
 mod choose;
+pub mod coordinates;
 mod curvature;
 pub mod evaluate;
 pub mod features;

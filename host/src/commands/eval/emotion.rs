@@ -13,7 +13,7 @@ use crate::commands::output::{print_json, spinner};
 
 /// Measure an emotion pack on labelled clips
 ///
-/// Every clip is read by the device's ranking functions (a gait: the mean of its strides); a pair of clips of one group with
+/// Every clip is read by the pack's ranking functions (a gait: the mean of its strides); a pair of clips of one group with
 /// different labels is right if their strengths are in the same order. Use takes that the pack was not trained on.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\

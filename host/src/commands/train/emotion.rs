@@ -141,13 +141,13 @@ pub fn run(args: &Args) -> miette::Result<()> {
         notes: attributes.iter().map(Attribute::note).chain(trained.notes.iter().cloned()).collect(),
         ..Provenance::default()
     };
-    let preview = PackFile::from_bytes(&trained.model.pack(&rig, &provenance));
+    let preview = PackFile::from_bytes(&trained.model.pack(&trained.rig, &provenance));
     let pack = preview.pack().into_diagnostic()?;
     let scorer = Scorer::load(&pack).into_diagnostic()?;
     let training = evaluate(&scorer, &kept);
     let unseen = (!held.is_empty()).then(|| evaluate(&scorer, &held));
     provenance.metrics = metrics(&trained, &training, unseen.as_ref());
-    let bytes = trained.model.pack(&rig, &provenance);
+    let bytes = trained.model.pack(&trained.rig, &provenance);
     write_whole(&args.out, &bytes)?;
     let file = PackFile::from_bytes(&bytes);
     args.report.write(&args.out, &file, page(&trained, &training, unseen.as_ref(), &scorer, &kept, &pack)?)?;
