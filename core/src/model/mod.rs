@@ -22,7 +22,7 @@ use tensor::payload_in_bounds;
 /// First four bytes of every pack.
 pub const MAGIC: [u8; 4] = *b"KNSC";
 /// Format version that this crate reads and the host writes.
-pub const VERSION: u16 = 1;
+pub const VERSION: u16 = 2;
 /// Bytes before the metadata.
 pub const HEADER_LEN: usize = 20;
 /// Alignment of the pack and of every tensor in it, bytes.
