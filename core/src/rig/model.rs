@@ -119,6 +119,18 @@ impl<'a> Rig<'a> {
         })
     }
 
+    /// Gives every coordinate of a joint this weight in a mask, such as [`Controls::mask`](crate::engine::Controls::mask). The root's
+    /// row goes with joint 0. A joint that the rig does not have is ignored.
+    pub fn weigh<const ROWS: usize>(&self, joint: usize, weight: f32, mask: &mut [[f32; 3]; ROWS]) {
+        if let (Some(root), 0, true) = (mask.first_mut(), joint, self.travels()) {
+            *root = [weight; 3];
+        }
+        if let Some((kind, first)) = self.places().nth(joint) {
+            let own = mask.as_flattened_mut().iter_mut().skip(first).take(kind.coordinates());
+            own.for_each(|to| *to = weight);
+        }
+    }
+
     pub(crate) fn iter(&self) -> impl Iterator<Item = Joint> + use<'a> {
         let tables = self.axes.iter().zip(self.reference).zip(self.middle);
         self.places().zip(tables).map(|((kind, first), ((axes, [i, j, k, w]), middle))| Joint {
@@ -201,6 +213,24 @@ mod tests {
         let body = [Ball, Ball, Hinge].map(|kind| kind as u16);
         let rig = Rig::new(&body, &[AXES; 3], &[REST; 3], &[[0.0; 3]; 3], Some(&[1.0, 0.0, 0.0])).unwrap();
         assert_eq!((rig.places().nth(2).unwrap().1, rig.rows()), (9, 4));
+    }
+
+    #[test]
+    fn a_joints_weight_is_that_of_its_coordinates() {
+        use JointKind::{Ball, Hinge};
+        let kinds = [Ball, Hinge, Hinge].map(|kind| kind as u16);
+        let (axes, reference, middle) = ([AXES; 3], [REST; 3], [[0.0; 3]; 3]);
+        let body = Rig::new(&kinds, &axes, &reference, &middle, Some(&[1.0, 0.0, 0.0])).unwrap();
+        let machine = Rig::new(&kinds, &axes, &reference, &middle, None).unwrap();
+        let weighed = |rig: &Rig, joint| {
+            let mut mask = [[1.0; 3]; 3];
+            rig.weigh(joint, 0.5, &mut mask);
+            mask
+        };
+        assert_eq!(weighed(&body, 0), [[0.5; 3], [0.5; 3], [1.0; 3]]);
+        assert_eq!(weighed(&machine, 0), [[0.5; 3], [1.0; 3], [1.0; 3]]);
+        assert_eq!(weighed(&body, 2), [[1.0; 3], [1.0; 3], [1.0, 0.5, 1.0]]);
+        assert_eq!(weighed(&body, 3), [[1.0; 3]; 3]);
     }
 
     #[test]
