@@ -75,8 +75,8 @@ pub(super) fn kept(motion: &Motion, count: usize, sparsity: &Sparsity, reached: 
     Sparse { factors, history: history.to_vec() }
 }
 
-/// Root mean square distance of a joint from where it should be, cm.
+/// Root mean square distance of a joint from where it should be, cm, to first order: what the levers say.
 pub fn joint_error(motion: &Motion, found: &Sparse) -> f64 {
     let rest = (&motion.values - found.factors.product()).squared_norm_l2();
-    100.0 * motion.scale * (3.0 * rest / (motion.frames() * motion.channels()).max(1) as f64).sqrt()
+    100.0 * motion.deviation * (3.0 * rest / (motion.frames() * motion.channels()).max(1) as f64).sqrt()
 }

@@ -10,7 +10,7 @@ use crate::vector::{Work, dot, vectorised};
 ///
 /// Two components that move different joints, with energies `a`, `b` and correlation `r` in time, leave
 /// `(a + b) / 2 - sqrt(((a - b) / 2)^2 + r^2 a b)` when one time course must do for both. No joint is in a component twice
-/// unless there is no other way. Cost: `F (3N)^2 / 2` multiply-adds and `(3N)^2` comparisons a join.
+/// unless there is no other way. Cost: `F (3R)^2 / 2` multiply-adds and `(3R)^2` comparisons a join.
 pub fn gather(motion: MatRef<'_, f64>, count: usize) -> Factors {
     let channels = motion.ncols();
     let mut parts = single(motion);

@@ -7,7 +7,7 @@ use super::factor::{Factors, column, column_mut, product};
 
 /// The `count` strongest principal components, weight columns at one in root mean square.
 ///
-/// Cost: `F (3N)^2 / 2` multiply-adds and an eigendecomposition of `3N x 3N`.
+/// Cost: `F (3R)^2 / 2` multiply-adds and an eigendecomposition of `3R x 3R`.
 pub fn pca(motion: MatRef<'_, f64>, count: usize) -> Factors {
     let (frames, channels) = (motion.nrows(), motion.ncols());
     // One half of it is all that the decomposition reads.

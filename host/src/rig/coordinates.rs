@@ -57,11 +57,6 @@ impl Coordinates {
         }
     }
 
-    /// Balls about the rest pose.
-    pub fn balls(joints: usize, across: Option<[f32; 3]>) -> Self {
-        Self::new(&vec![JointCoordinates::new(JointKind::Ball); joints], across)
-    }
-
     pub fn joints(&self) -> Vec<JointCoordinates> {
         let joint = |index: usize| JointCoordinates {
             kind: JointKind::from_code(self.kinds[index]).unwrap_or(JointKind::Fixed),
@@ -77,6 +72,18 @@ impl Coordinates {
         DeviceRig::new(&self.kinds, &self.axes, &self.reference, &self.middle, self.across.as_ref())
     }
 
+    /// The tables of a pack.
+    pub fn of_pack(pack: &Pack) -> Result<Self, LoadError> {
+        let joints = pack.metadata().joints.len();
+        Ok(Self {
+            kinds: pack.slice::<u16>("rig/kinds", joints)?.to_vec(),
+            axes: pack.slice::<[[f32; 3]; 3]>("rig/axes", joints)?.to_vec(),
+            reference: pack.slice::<[f32; 4]>("rig/reference", joints)?.to_vec(),
+            middle: pack.slice::<[f32; 3]>("rig/middle", joints)?.to_vec(),
+            across: pack.slice::<[f32; 3]>("rig/across", pack.rows("rig/across")?)?.first().copied(),
+        })
+    }
+
     pub fn write(&self, pack: &mut PackWriter) {
         pack.u16s("rig/kinds", 1, &self.kinds);
         pack.f32s("rig/axes", 9, self.axes.as_flattened().as_flattened());
@@ -84,19 +91,6 @@ impl Coordinates {
         pack.f32s("rig/middle", 3, self.middle.as_flattened());
         pack.f32s("rig/across", 3, self.across.as_slice().as_flattened());
     }
-}
-
-/// The coordinates of a pack's joints.
-pub(super) fn of_pack(pack: &Pack) -> Result<Vec<JointCoordinates>, LoadError> {
-    let joints = pack.metadata().joints.len();
-    let tables = Coordinates {
-        kinds: pack.slice::<u16>("rig/kinds", joints)?.to_vec(),
-        axes: pack.slice::<[[f32; 3]; 3]>("rig/axes", joints)?.to_vec(),
-        reference: pack.slice::<[f32; 4]>("rig/reference", joints)?.to_vec(),
-        middle: pack.slice::<[f32; 3]>("rig/middle", joints)?.to_vec(),
-        across: None,
-    };
-    Ok(tables.joints())
 }
 
 /// See [`Rig::centred`].
@@ -150,7 +144,7 @@ fn reflected(q: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
 /// See [`Rig::levers`].
 pub(super) fn levers(rig: &Rig) -> Vec<f64> {
     let device = rig.frames();
-    let mut pose = Pose::<MAX_JOINTS>::identity();
+    let mut pose = rig.zero_pose();
     let frame = Frame::<{ super::MAX_ROWS }>::new();
     device.show(&frame, &frame, &mut kinesic::rig::Drift::new(), &mut pose);
     let rotations: Vec<UnitQuaternion<f64>> =

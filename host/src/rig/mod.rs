@@ -2,9 +2,9 @@
 
 use kinesic::model::LoadError;
 use kinesic::pose::{Heading, World, forward, local_positions};
-use kinesic::rig::Drift;
+use kinesic::rig::{Drift, JointKind};
 use kinesic::{Frame, Pack, Pose, Rig as DeviceRig, Skeleton as DeviceSkeleton};
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 
 use coordinates::Coordinates;
 pub use coordinates::JointCoordinates;
@@ -70,12 +70,8 @@ pub struct Rig {
 }
 
 impl Rig {
-    /// The rig of a skeleton. `map` says which of its joints are the hips.
+    /// The rig of a body that travels. `map` says which of its joints are the hips.
     pub fn new(skeleton: &Skeleton, map: &JointMap) -> Result<Self, RigError> {
-        let joints = skeleton.joints.len();
-        if joints > MAX_JOINTS {
-            return Err(RigError::TooManyJoints { found: joints });
-        }
         let hip = |canonical, missing| {
             map.joint(canonical).map(|j| j as u16).ok_or_else(|| RigError::NoHips {
                 missing,
@@ -83,11 +79,31 @@ impl Rig {
             })
         };
         let across = vec![[hip(Canonical::LHip, "left hip")?, hip(Canonical::RHip, "right hip")?]];
+        let balls = vec![JointCoordinates::new(JointKind::Ball); skeleton.joints.len()];
+        Self::build(skeleton, map, across, Coordinates::new(&balls, hips_axis(skeleton, map)))
+    }
+
+    /// The rig of a machine that stands: one entry of `joints` per joint of the skeleton.
+    pub fn machine(skeleton: &Skeleton, joints: &[JointCoordinates]) -> Result<Self, RigError> {
+        let map = JointMap::from_indices("machine", [None; CANONICAL], skeleton);
+        Self::build(skeleton, &map, Vec::new(), Coordinates::new(joints, None))
+    }
+
+    fn build(
+        skeleton: &Skeleton,
+        map: &JointMap,
+        across: Vec<[u16; 2]>,
+        coordinates: Coordinates,
+    ) -> Result<Self, RigError> {
+        let joints = skeleton.joints.len();
+        if joints > MAX_JOINTS {
+            return Err(RigError::TooManyJoints { found: joints });
+        }
         let rig = Self {
             parents: skeleton.joints.iter().map(|j| j.parent.unwrap_or(0) as u16).collect(),
             offsets: skeleton.joints.iter().map(|j| j.offset.map(|x| x as f32).into()).collect(),
             aims: aims(skeleton),
-            coordinates: Coordinates::balls(joints, hips_axis(skeleton, map)),
+            coordinates,
             across,
             skeleton: skeleton.clone(),
             map: map.clone(),
@@ -182,12 +198,26 @@ impl Rig {
         styled.collect()
     }
 
-    /// Heading-local positions, m, `[frames x 3 joints]`, of rows of coordinates `[frames x 3 rows]`; the root's is `[0, height, 0]`.
-    pub fn positions(&self, rows: &[f64]) -> Vec<f64> {
+    /// The pose whose coordinates are 0: every joint at its reference, those without coordinates too, which
+    /// [`show`](DeviceRig::show) leaves alone.
+    pub fn zero_pose(&self) -> Pose<MAX_JOINTS> {
+        let mut pose = Pose::identity();
+        for (to, joint) in pose.rotations.iter_mut().zip(self.joint_coordinates()) {
+            *to = UnitQuaternion::new_normalize(nalgebra::Vector4::from(joint.reference).into());
+        }
+        pose
+    }
+
+    /// What distances are measured in, m, `[frames x channels]`, of coordinates `[frames x 3 rows]`. Of a body: heading-local positions,
+    /// 3 per joint, the root's `[0, height, 0]`. Of a machine that stands: its coordinates times their levers.
+    pub fn positions(&self, coordinates: &[f64]) -> Vec<f64> {
         let (rig, skeleton) = (self.frames(), self.device());
+        if !rig.travels() {
+            return self.scaled(coordinates);
+        }
         let mut world = World::<MAX_JOINTS>::identity();
-        let mut positions = Vec::with_capacity(rows.len());
-        for row in rows.chunks_exact(3 * rig.rows()) {
+        let mut positions = Vec::with_capacity(coordinates.len());
+        for row in coordinates.chunks_exact(3 * rig.rows()) {
             let mut frame = HostFrame::new();
             frame.coordinates_mut().iter_mut().zip(row).for_each(|(to, from)| *to = *from as f32);
             let mut pose = Pose::identity();
@@ -198,6 +228,18 @@ impl Rig {
             positions.extend(local[..self.joints()].as_flattened().iter().map(|x| f64::from(*x)));
         }
         positions
+    }
+
+    /// Coordinates `[frames x 3 rows]`, each times its lever.
+    pub fn scaled(&self, coordinates: &[f64]) -> Vec<f64> {
+        let levers = self.levers();
+        let rows = coordinates.chunks_exact(levers.len());
+        rows.flat_map(|row| row.iter().zip(&levers).map(|(x, lever)| x * lever)).collect()
+    }
+
+    /// A motion of a machine that stands, from its coordinates `[frames x 3 rows]`.
+    pub fn standing(&self, coordinates: Vec<f64>) -> Locals {
+        Locals { channels: 3 * self.rows(), positions: self.scaled(&coordinates), rows: self.rows(), coordinates }
     }
 
     /// How far a unit of each coordinate moves what hangs on it, m per rad or m: the root of the summed squares over the joints and
@@ -258,8 +300,8 @@ impl Rig {
         let known: &[[u16; CANONICAL]] = pack.slice("skeleton/canonical", 1)?;
         let indices = known[0].map(|joint| (joint != UNKNOWN).then_some(usize::from(joint)));
         let map = JointMap::from_indices("pack", indices, &skeleton);
-        let rig = Self::new(&skeleton, &map)?;
-        Ok(rig.with_coordinates(coordinates::of_pack(pack)?)?)
+        let across: &[[u16; 2]] = pack.slice("skeleton/across", pack.rows("skeleton/across")?)?;
+        Self::build(&skeleton, &map, across.to_vec(), Coordinates::of_pack(pack)?)
     }
 
     /// The poses of a clip on this rig (same joints in the same order; see [`retarget`](crate::retarget)).
@@ -288,7 +330,7 @@ impl Rig {
             rotations: poses
                 .iter()
                 .flat_map(|pose| pose.rotations.iter().take(joints))
-                .map(|q| nalgebra::UnitQuaternion::new_normalize(q.into_inner().cast()))
+                .map(|q| UnitQuaternion::new_normalize(q.into_inner().cast()))
                 .collect(),
             notes: Vec::new(),
         }
@@ -300,7 +342,7 @@ impl Rig {
         let mut heading = Heading::default();
         let mut world = World::<MAX_JOINTS>::identity();
         let rows = self.rows();
-        let mut locals = Locals { joints: self.joints(), positions: Vec::new(), rows, coordinates: Vec::new() };
+        let mut locals = Locals { channels: 3 * self.joints(), positions: Vec::new(), rows, coordinates: Vec::new() };
         for (pose, frame) in poses.iter().zip(self.read(poses)) {
             forward(&skeleton, pose, &mut world);
             heading = heading.follow(&skeleton, &world);
@@ -315,9 +357,9 @@ impl Rig {
 /// A clip as the models see it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Locals {
-    /// Number of joints.
-    pub joints: usize,
-    /// Heading-local positions, m, row-major `[frames x 3 joints]`; the root's is `[0, height, 0]`.
+    /// Numbers of one frame of `positions`.
+    pub channels: usize,
+    /// What distances are measured in, m, `[frames x channels]`: see [`Rig::positions`].
     pub positions: Vec<f64>,
     /// Rows of a frame.
     pub rows: usize,
@@ -328,12 +370,12 @@ pub struct Locals {
 impl Locals {
     /// Number of frames.
     pub fn frames(&self) -> usize {
-        self.positions.len() / self.channels().max(1)
+        self.positions.len() / self.channels.max(1)
     }
 
-    /// Positions of one frame: 3 per joint.
+    /// Numbers of one frame of `positions`.
     pub fn channels(&self) -> usize {
-        3 * self.joints
+        self.channels
     }
 }
 

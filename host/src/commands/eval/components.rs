@@ -11,8 +11,8 @@ use crate::commands::output::print_json;
 
 /// Measure a pack of style components
 ///
-/// The stored stream is played through the device's code, restyled and plain. Reconstruction error and style distance need
-/// the training clips: they are what the training recorded.
+/// The stored stream is played through the device's code, restyled and plain. Reconstruction error, style distance and
+/// the angles to the style need the training clips: they are what the training recorded.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -22,7 +22,7 @@ pub struct Args {
     /// Pack to measure
     #[arg(value_name = "PACK.kin")]
     pack: PathBuf,
-    /// Print one JSON object: reconstruction_error, density, style_distance, content_distance, bone_error_max_percent,
+    /// Print one JSON object: reconstruction_error, density, style_distance, content_distance, degrees_after,
     /// jerk_ratio and more
     #[arg(long)]
     json: bool,
@@ -51,10 +51,13 @@ fn print(report: &Report) {
     line("reconstruction error", report.reconstruction_error, "relative, content clip (recorded)");
     line("style distance", report.style_distance, "Gram matrices, relative (recorded)");
     line("content distance", report.content_distance, "components, relative");
-    line("largest bone error, composed", report.composed_bone_error_max_percent, "%");
-    line("mean bone error, composed", report.composed_bone_error_mean_percent, "%");
-    line("largest bone error, restored", report.bone_error_max_percent, "%");
-    line("mean bone error, restored", report.bone_error_mean_percent, "%");
+    line("degrees to the style, before", report.degrees_before.all, "mean over all joints (recorded)");
+    line("degrees to the style, after", report.degrees_after.all, "mean over all joints (recorded)");
+    line("the same, leaves, before", report.degrees_before.leaves, "head, hands, feet (recorded)");
+    line("the same, leaves, after", report.degrees_after.leaves, "head, hands, feet (recorded)");
+    line("moved", report.moved_cm, "cm a joint, the stored stream at strength 1 from that at 0");
+    line("turned", report.moved_degrees.all, "degrees, mean over all joints, the same");
+    line("turned, leaves", report.moved_degrees.leaves, "degrees, head, hands, feet, the same");
     line("jerk", report.jerk, "m/s^3");
     line("jerk ratio", report.jerk_ratio, "to the content, both from the stored stream");
 }

@@ -63,9 +63,6 @@ pub struct Args {
     /// Weight of the style's Gram matrix; see --curve
     #[arg(long, value_name = "S", default_value_t = 0.01)]
     style_weight: f64,
-    /// Weight of keeping the length of bones while learning (the device restores them in any case)
-    #[arg(long, value_name = "W", default_value_t = 10.0)]
-    bone_weight: f64,
     /// Weight of velocities and accelerations like the content's; 1 is a good start against jerky results
     #[arg(long, value_name = "W", default_value_t = 0.0)]
     smooth: f64,
@@ -117,6 +114,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let rig = content.rig().into_diagnostic()?;
     let on_rig = |source: &Source| source.on_rig(&rig, FRAME_RATE).into_diagnostic();
     let (content, style) = (on_rig(&content)?, on_rig(&style)?);
+    let rig = rig.centred(&[&rig.poses(&content), &rig.poses(&style)]);
     bar.set_message("factorising and learning");
     let options = args.options();
     let name = args.name.clone().unwrap_or_else(|| file_stem(&args.out));
@@ -129,7 +127,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let mut checkpoint = args.resume.checkpoint(&args.out, &deciding)?;
     let reached = Reached::new(&mut checkpoint).into_diagnostic()?;
     let trained = train_kept(&rig, &content, &style, &name, &options, &reached).into_diagnostic()?;
-    let curve = if args.curve { trade_off(&rig, &trained, &options, &CURVE, &reached) } else { Vec::new() };
+    let curve = if args.curve { trade_off(&trained, &options, &CURVE, &reached) } else { Vec::new() };
     drop(reached);
 
     let mut provenance = Provenance {
@@ -182,12 +180,7 @@ impl Args {
                 density: (self.density != 1.0).then_some(self.density),
                 ..Sparsity::default()
             },
-            weights: Weights {
-                content: self.content_weight,
-                style: self.style_weight,
-                bones: self.bone_weight,
-                smooth: self.smooth,
-            },
+            weights: Weights { content: self.content_weight, style: self.style_weight, smooth: self.smooth },
             optimiser: Optimiser { seed: self.seed, ..Optimiser::default() },
             posture: self.posture,
         }
@@ -203,14 +196,17 @@ fn metric(name: &str, value: f64) -> Metric {
 }
 
 fn recorded(trained: &Trained) -> Vec<Metric> {
-    vec![metric(RECORDED[0], trained.reconstruction_error), metric(RECORDED[1], trained.style_distance)]
+    let (before, after) = (trained.degrees_before, trained.degrees_after);
+    let values =
+        [trained.reconstruction_error, trained.style_distance, before.all, before.leaves, after.all, after.leaves];
+    RECORDED.into_iter().zip(values).map(|(name, value)| metric(name, value)).collect()
 }
 
 fn measured(report: &Report) -> Vec<Metric> {
     vec![
         metric("density", report.density),
         metric("content_distance", report.content_distance),
-        metric("bone_error_max_percent", report.bone_error_max_percent),
+        metric("moved_leaf_degrees", report.moved_degrees.leaves),
         metric("jerk_ratio", report.jerk_ratio),
     ]
 }
@@ -244,17 +240,14 @@ fn print(summary: &Summary) {
         report.style_distance, report.content_distance
     );
     println!(
-        "bones          {:8.2}  % largest error as composed, {:.4} % restored",
-        report.composed_bone_error_max_percent, report.bone_error_max_percent
+        "angles         {:8.1}  degrees to the style, {:.1} before; head, hands, feet {:.1}, {:.1} before",
+        report.degrees_after.all, report.degrees_before.all, report.degrees_after.leaves, report.degrees_before.leaves
     );
     println!("jerk           {:8.2}  times the content's", report.jerk_ratio);
     if !summary.curve.is_empty() {
-        println!("style weight   style distance   content distance   mean bone error, %");
+        println!("style weight   style distance   content distance");
         for point in summary.curve {
-            println!(
-                "{:12}   {:14.3}   {:16.3}   {:18.3}",
-                point.style_weight, point.style_distance, point.content_distance, point.bone_error_mean_percent
-            );
+            println!("{:12}   {:14.3}   {:16.3}", point.style_weight, point.style_distance, point.content_distance);
         }
     }
     println!(
