@@ -217,10 +217,11 @@ impl Rig {
         }
         let mut world = World::<MAX_JOINTS>::identity();
         let mut positions = Vec::with_capacity(coordinates.len());
+        let zero = self.zero_pose();
         for row in coordinates.chunks_exact(3 * rig.rows()) {
             let mut frame = HostFrame::new();
             frame.coordinates_mut().iter_mut().zip(row).for_each(|(to, from)| *to = *from as f32);
-            let mut pose = Pose::identity();
+            let mut pose = zero;
             rig.show(&frame, &frame, &mut Drift::new(), &mut pose);
             forward(&skeleton, &pose, &mut world);
             let heading = Heading::default().follow(&skeleton, &world);
