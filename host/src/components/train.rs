@@ -173,7 +173,7 @@ pub fn train_kept(
         strength: [0.0, 1.0],
     };
     let [speed, style_speed] = [&locals, &style_locals].map(|l| top_speed(&l.positions, l.channels()));
-    model.strength[1] = plausible(&model, rig, SPEED_UP * speed.max(style_speed));
+    model.strength[1] = plausible(&model, rig, locals.channels(), SPEED_UP * speed.max(style_speed));
     let file = PackFile::from_bytes(&model.pack(rig, &Provenance::default()));
     let result = play_stored(&file.pack()?, rig, &Settings::default())?;
     Ok(Trained {
@@ -276,8 +276,8 @@ fn check(options: &TrainOptions) -> Result<(), TrainError> {
 }
 
 /// The largest strength of 1, 1.25, ... 2 at which no joint is faster than `fastest`, m per frame, heading-local.
-fn plausible(model: &ComponentsModel, rig: &Rig, fastest: f64) -> f64 {
-    let slow = |strength: &f64| top_speed(&rig.positions(&composed(model, *strength)), 3 * rig.joints()) <= fastest;
+fn plausible(model: &ComponentsModel, rig: &Rig, channels: usize, fastest: f64) -> f64 {
+    let slow = |strength: &f64| top_speed(&rig.positions(&composed(model, *strength)), channels) <= fastest;
     [1.25, 1.5, 1.75, 2.0].into_iter().take_while(slow).last().unwrap_or(1.0)
 }
 
