@@ -56,8 +56,8 @@ impl<const ROWS: usize> Limiter<'_, ROWS> {
         self.advance(state, frame, true);
     }
 
-    /// No frame came. The last target stays for `hold` seconds, then the coordinates go to rest with the time constant `decay`; the
-    /// root stays where it is. The next sound frame is the target again; the way to it keeps all limits, and ends within
+    /// No frame came. The last target stays for `hold` seconds, then the coordinates go to rest with the time constant `decay`, the root's
+    /// height among them; over the ground the root finishes its way and stays. The next sound frame is the target again; the way to it keeps all limits, and ends within
     /// [`recovery_frames`](Self::recovery_frames) if it stands still.
     pub fn idle(&self, state: &mut LimitState<ROWS>, frame: &mut Frame<ROWS>) {
         state.report.gap = state.report.gap.saturating_add(1);

@@ -51,9 +51,10 @@ impl<const ROWS: usize> Frame<ROWS> {
         numbers.into_iter().all(|x| x.abs() < Self::LARGEST) && self.heading.is_sound()
     }
 
-    /// The next pose has not travelled: what it is farther on counts as a leap.
+    /// The next pose has not travelled: what it is farther on counts as a leap. The last leap is over.
     pub fn forget_place(&mut self) {
         self.started = false;
+        self.leap = [0.0; 2];
     }
 }
 

@@ -8,7 +8,7 @@ use kinesic_host::clip::{self, JointMap};
 use kinesic_host::components::HostComponents;
 use kinesic_host::emotion::HostEmotion;
 use kinesic_host::face::HostFace;
-use kinesic_host::limit::HostLimiter;
+use kinesic_host::limit::{HostLimiter, LimitsModel};
 use kinesic_host::mechanics::HostMechanics;
 use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_host::rig::Rig;
@@ -200,13 +200,15 @@ fn model(pack: &Pack, meta: &ModelMeta, joints: usize) -> miette::Result<ModelRe
         }
         ModelMeta::Limits(meta) => {
             let limiter = HostLimiter::load(pack).into_diagnostic()?;
+            let joints = LimitsModel::from_pack(pack).into_diagnostic()?.joints;
             let figures = json!({
-                "limited_joints": limiter.table().kinds.iter().filter(|kind| **kind != 0).count(),
+                "limited_joints": joints.iter().filter(|joint| joint.count() > 0 && !joint.is_free()).count(),
                 "root_velocity_m_s": f64::from(meta.root_velocity),
                 "root_acceleration_m_s2": f64::from(meta.root_acceleration),
+                "heading_velocity_rad_s": f64::from(meta.heading_velocity),
+                "heading_acceleration_rad_s2": f64::from(meta.heading_acceleration),
                 "hold_s": f64::from(meta.hold),
                 "decay_s": f64::from(meta.decay),
-                "frozen_s": f64::from(meta.frozen),
                 "recovery_frames": limiter.recovery_frames(),
             });
             ("limits", figures)

@@ -109,7 +109,7 @@ impl PackWriter {
     pub fn copy_models(&mut self, pack: &Pack) -> Result<(), LoadError> {
         let metadata = pack.metadata();
         metadata.models.iter().filter(|model| model.limits().is_none()).for_each(|model| self.model(&model));
-        let kept = |name: &str| !name.starts_with("skeleton/") && !name.starts_with("limit/");
+        let kept = |name: &str| !["skeleton/", "rig/", "limit/"].iter().any(|part| name.starts_with(part));
         for tensor in metadata.tensors.iter().filter(|tensor| kept(tensor.name)) {
             self.copy(&tensor, pack.bytes(&tensor).ok_or(LoadError::Metadata)?);
         }
