@@ -47,7 +47,13 @@ impl<'a, const ROWS: usize, const KEYS: usize, const WIDTH: usize> Emotion<'a, R
         fits("KEYS", keys, KEYS)?;
         fits("WIDTH", components.max(inputs), WIDTH)?;
         let rate = pack.metadata().frame_rate;
-        if attributes == 0 || units == 0 || components == 0 || !plausible(&meta, attributes) || rate.is_nan() || rate <= 0.0 {
+        if attributes == 0
+            || units == 0
+            || components == 0
+            || !plausible(&meta, attributes)
+            || rate.is_nan()
+            || rate <= 0.0
+        {
             return Err(LoadError::Metadata);
         }
         let tiles = components.div_ceil(TILE).saturating_mul(inputs);

@@ -141,13 +141,16 @@ impl<const ROWS: usize, const KEYS: usize> Motion<ROWS, KEYS> {
     /// Makes a cycle of keyframes that nearly are one: what the last posture differs from the first one's is spread over the
     /// whole round, half of it to each end, so that the next round begins exactly where this one ends.
     fn close(&mut self) {
-        let (Some(first), Some(last)) = (self.keys.first().copied(), self.keys.get(self.pieces).copied()) else { return };
+        let (Some(first), Some(last)) = (self.keys.first().copied(), self.keys.get(self.pieces).copied()) else {
+            return;
+        };
         let mut round = Place::default();
         if self.travels {
             self.turn = last.heading - first.heading;
             let (sin, cos) = sin_cos(self.turn);
             round.heading = Heading::default().turned(sin, cos);
-            let ground = |key: &Key<ROWS>| key.rows.first().map_or_else(Vector3::zeros, |[x, _, z]| Vector3::new(*x, 0.0, *z));
+            let ground =
+                |key: &Key<ROWS>| key.rows.first().map_or_else(Vector3::zeros, |[x, _, z]| Vector3::new(*x, 0.0, *z));
             round.ground = ground(&last) - round.heading.to_world(ground(&first));
         }
         let mut passed = 0.0;

@@ -133,8 +133,10 @@ impl Cycle {
     fn new(rig: &Rig, levers: &[f64], moments: &[Moment]) -> Self {
         let poses: Vec<_> = moments.iter().map(|(_, pose)| *pose).collect();
         let rows = of_poses(rig, &poses);
-        let weighted: Vec<f64> =
-            rows.chunks_exact(levers.len()).flat_map(|row| row.iter().zip(levers).map(|(x, lever)| x * lever)).collect();
+        let weighted: Vec<f64> = rows
+            .chunks_exact(levers.len())
+            .flat_map(|row| row.iter().zip(levers).map(|(x, lever)| x * lever))
+            .collect();
         let coordinates: Vec<f64> =
             rows.chunks_exact(levers.len()).flat_map(|row| row[..3 * rig.rows()].to_vec()).collect();
         let bodies = rig.positions(&coordinates);

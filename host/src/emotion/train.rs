@@ -8,8 +8,8 @@ use super::keyframes::{Curve, Keyframes};
 use super::model::{Attribute, EmotionModel, Reading};
 use super::motions::{Example, Motion, features, motions, pairs, takes};
 use super::regress::{RegressOptions, regress};
-use super::segment::{Cut, FRAME_RATE, Segment};
 use super::samples::add_scaled;
+use super::segment::{Cut, FRAME_RATE, Segment};
 use super::{MAX_KEYS, MAX_WIDTH, RankOptions, Samples, choose_cost, rank};
 use crate::rig::Rig;
 use crate::vector::line;
@@ -202,7 +202,9 @@ pub fn train(
         duration: durations(&motions, &keyframes),
         // Row-major [2 channels x D]: a component a column.
         basis: (back.iter().enumerate())
-            .flat_map(|(c, back)| made.components.chunks_exact(made.mean.len()).map(move |component| component[c] * back))
+            .flat_map(|(c, back)| {
+                made.components.chunks_exact(made.mean.len()).map(move |component| component[c] * back)
+            })
             .collect(),
         mean: made.mean.iter().zip(material.back(1.0)).map(|(mean, back)| mean * back).collect(),
         reading: Reading {
@@ -307,7 +309,8 @@ impl Material {
         let channels = self.levers.len();
         let positions = |keyframes: &[f64]| {
             let keys = keyframes.chunks_exact(2 * channels);
-            let rows: Vec<f64> = keys.flat_map(|key| key.iter().zip(&self.levers).map(|(x, lever)| x / lever)).collect();
+            let rows: Vec<f64> =
+                keys.flat_map(|key| key.iter().zip(&self.levers).map(|(x, lever)| x / lever)).collect();
             coordinates::positions(&self.rig, &rows)
         };
         let motions = self.rows.chunks_exact(model.keyframes * 2 * channels);

@@ -1,10 +1,10 @@
 //! The report of `kinesic train emotion`.
 
 use kinesic::Pack;
-use kinesic_host::emotion::{HostEmotion, Trained};
 use kinesic_host::emotion::evaluate::{Report, Scorer, mean};
 use kinesic_host::emotion::motions::Example;
 use kinesic_host::emotion::play::{Settings, Strengths, play, seconds};
+use kinesic_host::emotion::{HostEmotion, Trained};
 use kinesic_host::report::{Chart, Line, Report as Page, Table, figures};
 use kinesic_host::rig::Rig;
 use miette::IntoDiagnostic;
