@@ -38,9 +38,8 @@ pub struct Sequence {
 impl Sequence {
     /// The sequence of a pair.
     pub fn new(rig: &Rig, source: &Locals, target: &Locals, on: &Correspondence, group: usize) -> Self {
-        let levers = rig.levers();
-        let styled = scaled(&target.coordinates, &levers);
-        let channels = levers.len();
+        let styled = rig.scaled(&target.coordinates);
+        let channels = 3 * rig.rows();
         let last = target.frames().saturating_sub(1);
         let mut output = Vec::with_capacity(on.target.len() * channels);
         for (at, duration) in on.target.iter().zip(&on.duration) {
@@ -57,7 +56,7 @@ impl Sequence {
         }
         Self {
             channels,
-            input: scaled(&source.coordinates, &levers),
+            input: rig.scaled(&source.coordinates),
             covered: on.covered.clone(),
             output,
             log_duration: on.duration.iter().map(|d| d.log2()).collect(),
@@ -81,11 +80,6 @@ impl Sequence {
     pub fn covered_input(&self) -> &[f64] {
         &self.input[self.covered.start * self.channels..self.covered.end * self.channels]
     }
-}
-
-/// Coordinates `[frames x 3 rows]`, each times its lever.
-pub fn scaled(coordinates: &[f64], levers: &[f64]) -> Vec<f64> {
-    coordinates.chunks_exact(levers.len()).flat_map(|row| row.iter().zip(levers).map(|(x, lever)| x * lever)).collect()
 }
 
 /// Where every coordinate goes in a mirror that turns X round, and whether its sign changes.

@@ -157,7 +157,7 @@ pub fn train_kept(
     }
     progress(Stage::Align);
     let partners = partners(rig);
-    let ways = options.alignment.map_or_else(|| Alignment::ALL.to_vec(), |way| vec![way]);
+    let ways = options.alignment.map_or_else(|| Alignment::of(rig), |way| vec![way]);
     let align = |way| aligned(way, rig, pairs, &partners, fps);
     let tried: Vec<(Alignment, f64, Option<Vec<Sequence>>)> = ways
         .par_iter()
@@ -319,7 +319,7 @@ fn baselines(pairs: &[TrainPair]) -> Result<Baselines, TrainError> {
         source.extend(from);
         target.extend(to);
     }
-    Ok(baseline::fit(&source, &target, pairs.first().map_or(0, |pair| pair.source.joints)))
+    Ok(baseline::fit(&source, &target, pairs.first().map_or(0, |pair| pair.source.channels / 3)))
 }
 
 /// Training sequences on the plain time warp: the mean match of each source frame, and the clips' average timing.
