@@ -39,9 +39,9 @@ fn main() -> ! {
         // A frame that is missing or garbled never reaches the filters: what was shown last is held.
         let source = motion::read_pose(frame);
         style.step(&mut state, source.as_ref(), &mut styled);
-        if frame % 30 == 29 {
+        if frame % 25 == 24 {
             // On a board: angles to the servos.
-            println!("frame {frame}: neck bends by {} milliradians", motion::neck(&styled));
+            println!("frame {frame}: the left arm is turned by {} milliradians", motion::arm(&styled));
         }
     }
     println!("{} of {} frames were held", state.report().faulty, state.report().frames);

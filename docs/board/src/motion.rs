@@ -8,12 +8,11 @@ use kinesic::nalgebra::{Quaternion, UnitQuaternion, Vector3};
 pub const FRAMES: u32 = 180;
 
 /// Frames that the radio loses.
-const LOST: core::ops::Range<u32> = 100..104;
+const LOST: core::ops::Range<u32> = 97..101;
 
 // Joints of the pack, in the order in which `kinesic inspect` prints them.
 const LEFT_THIGH: usize = 1;
 const RIGHT_THIGH: usize = 5;
-const NECK: usize = 11;
 const LEFT_ARM: usize = 13;
 const RIGHT_ARM: usize = 16;
 
@@ -36,7 +35,7 @@ pub fn read_pose(frame: u32) -> Option<Pose<19>> {
     Some(pose)
 }
 
-/// Forward bend of the neck joint, milliradians, to about a thousandth (small angles: twice the half angle's sine).
-pub fn neck(pose: &Pose<19>) -> i32 {
-    pose.rotations.get(NECK).map_or(0, |rotation| (2000.0 * rotation.i) as i32)
+/// How far the left arm is turned about the axis to the left, milliradians (small angles: twice the half angle's sine).
+pub fn arm(pose: &Pose<19>) -> i32 {
+    pose.rotations.get(LEFT_ARM).map_or(0, |rotation| (2000.0 * rotation.i) as i32)
 }
