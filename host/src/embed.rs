@@ -36,8 +36,9 @@ pub fn rust_module(file: &PackFile, origin: &str) -> Result<String, LoadError> {
         let _ = write!(out, "\n/// {doc}.\n#[allow(dead_code)]\npub const {name}: {kind} = {value};\n");
     };
     constant("Joints of a pose", "JOINTS", &metadata.joints.iter().count(), "usize");
+    constant("Rows of coordinates of a frame", "ROWS", &kinesic::Rig::load(&pack)?.rows(), "usize");
     constant(
-        "Frames a second at which the pack is stepped",
+        "Frames per second at which the pack is stepped",
         "FRAME_RATE",
         &format!("{:?}", metadata.frame_rate),
         "f32",
@@ -69,7 +70,7 @@ pub fn rust_module(file: &PackFile, origin: &str) -> Result<String, LoadError> {
             ModelMeta::Face(meta) => {
                 constant("Hidden units of a cluster of head pose", "UNITS", &meta.hidden, "usize");
             }
-            // As many joints as a pose.
+            // As many rows as a frame.
             ModelMeta::Limits(_) => {}
         }
     }
@@ -98,11 +99,11 @@ pub fn rust_module(file: &PackFile, origin: &str) -> Result<String, LoadError> {
 /// The types of an engine with the module's constants as capacities.
 fn engine(meta: &ModelMeta) -> (&'static str, &'static str) {
     match meta {
-        ModelMeta::Translator(_) => ("Translator::<JOINTS, STATES>", "TranslatorState"),
+        ModelMeta::Translator(_) => ("Translator::<ROWS, STATES>", "TranslatorState"),
         ModelMeta::Mechanics(_) => ("BodyMechanics::<JOINTS, UNITS, WINDOW>", "MechanicsState"),
-        ModelMeta::Components(_) => ("Components::<JOINTS, COMPONENTS>", "ComponentsState"),
-        ModelMeta::Emotion(_) => ("Emotion::<JOINTS, KEYS, WIDTH>", "EmotionState"),
+        ModelMeta::Components(_) => ("Components::<ROWS, COMPONENTS>", "ComponentsState"),
+        ModelMeta::Emotion(_) => ("Emotion::<ROWS, KEYS, WIDTH>", "EmotionState"),
         ModelMeta::Face(_) => ("FaceSynth::<UNITS>", "FaceState"),
-        ModelMeta::Limits(_) => ("Limiter::<JOINTS>", "LimitState"),
+        ModelMeta::Limits(_) => ("Limiter::<ROWS>", "LimitState"),
     }
 }

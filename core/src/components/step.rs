@@ -61,7 +61,7 @@ impl<const ROWS: usize, const COUNT: usize> Components<'_, ROWS, COUNT> {
         for (row, shift) in styled.iter_mut().zip(self.shift) {
             row.iter_mut().zip(shift).for_each(|(x, shift)| *x += shift);
         }
-        state.controls.apply(&styled, frame, self.rows);
+        state.controls.apply(&mut styled, frame, self.rows);
     }
 }
 

@@ -17,19 +17,20 @@ impl<const ROWS: usize> Controls<ROWS> {
         Self { strength: 1.0, mask: [[1.0; 3]; ROWS] }
     }
 
-    /// `x + strength mask (y - x)` for the first `rows` rows of a frame `x`. False, and nothing has changed, if that is not sound.
-    /// Cost: 2 multiply-adds per coordinate.
-    pub(crate) fn apply(&self, styled: &[[f32; 3]; ROWS], frame: &mut Frame<ROWS>, rows: usize) -> bool {
-        let mut out = *frame;
-        let coordinates = out.rows.iter_mut().zip(styled).zip(&self.mask).take(rows);
-        for ((x, y), weight) in coordinates.flat_map(|((x, y), weight)| x.iter_mut().zip(y).zip(weight)) {
-            let weight = self.strength * weight;
-            let weight = if weight.is_finite() { weight } else { 0.0 };
-            *x += weight * (y - *x);
+    /// `x + strength mask (y - x)` for the first `rows` rows of a frame `x`; `styled` is `y` and is spent. False, and the frame has not
+    /// changed, if that is not sound. Cost: 2 multiply-adds per coordinate.
+    pub(crate) fn apply(&self, styled: &mut [[f32; 3]; ROWS], frame: &mut Frame<ROWS>, rows: usize) -> bool {
+        let mut sound = true;
+        for ((y, x), weight) in styled.iter_mut().zip(&frame.rows).zip(&self.mask).take(rows) {
+            for ((y, x), weight) in y.iter_mut().zip(x).zip(weight) {
+                let weight = self.strength * weight;
+                let weight = if weight.is_finite() { weight } else { 0.0 };
+                *y = x + weight * (*y - x);
+                sound &= y.abs() < Frame::<ROWS>::LARGEST;
+            }
         }
-        let sound = out.is_sound();
         if sound {
-            *frame = out;
+            frame.rows.iter_mut().zip(styled).take(rows).for_each(|(x, y)| *x = *y);
         }
         sound
     }

@@ -115,7 +115,7 @@ mod tests {
     fn it_is_the_weighted_mean_and_the_source_where_nothing_counts() {
         let mix = Mix((Add(1.0), Add(4.0)));
         let mut state = MixState { source: 1.0, ..MixState::default() };
-        let mut run = |state: &mut MixState<(u32, u32), 2>| {
+        let run = |state: &mut MixState<(u32, u32), 2>| {
             let mut frame = Frame::<1>::from_coordinates(&[1.0, 2.0, 3.0]);
             mix.step(state, &mut frame);
             frame.rows[0]

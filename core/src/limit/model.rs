@@ -44,8 +44,6 @@ pub(super) struct Rates {
 
 /// One coordinate's limits.
 pub(super) struct Limit {
-    /// Its index.
-    pub index: usize,
     pub bounds: Bounds,
     pub rest: f32,
 }
@@ -126,9 +124,19 @@ impl<'a, const ROWS: usize> Limiter<'a, ROWS> {
         if let Some((tensor, found)) = counts.into_iter().find(|(_, count)| *count != rows) {
             return Err(LoadError::Shape { tensor, found, expected: rows });
         }
-        for Limit { index, bounds: Bounds { lower, upper, speed, change }, rest } in self.limits() {
+        let height = self.rig.travels().then_some(1);
+        let joints = || self.rig.places().flat_map(|(kind, first)| first..first + kind.coordinates());
+        let used = |index: usize| height == Some(index) || joints().any(|own| own == index);
+        for (index, limit) in self.limits().enumerate() {
             let refuse = |tensor| Err(LoadError::Value { tensor, index: index / 3 });
-            if !STEPS.contains(&speed) {
+            let (limit, used) = (limit, used(index));
+            let Some(Limit { bounds: Bounds { lower, upper, speed, change }, rest }) = limit else {
+                if used {
+                    return refuse("limit/velocity");
+                }
+                continue;
+            };
+            if !used || !STEPS.contains(&speed) {
                 return refuse("limit/velocity");
             }
             if !STEPS.contains(&change) {
@@ -137,7 +145,7 @@ impl<'a, const ROWS: usize> Limiter<'a, ROWS> {
             if !(lower.abs() <= FARTHEST && lower <= upper) {
                 return refuse("limit/lower");
             }
-            if !(upper.abs() <= FARTHEST) {
+            if upper.abs() > FARTHEST {
                 return refuse("limit/upper");
             }
             if !(lower..=upper).contains(&rest) {
@@ -147,21 +155,16 @@ impl<'a, const ROWS: usize> Limiter<'a, ROWS> {
         Ok(())
     }
 
-    /// The limits of every coordinate that the rig has, travel apart, in order.
-    pub(super) fn limits(&self) -> impl Iterator<Item = Limit> + use<'a, ROWS> {
+    /// The limits of every coordinate, in order; `None` for travel, and for what a row does not use. Cost: two products per coordinate.
+    pub(super) fn limits(&self) -> impl Iterator<Item = Option<Limit>> + use<'a, ROWS> {
         let (table, time) = (self.table, self.frame_time);
-        let of = |table: &'a [[f32; 3]], index: usize| table.as_flattened().get(index).copied().unwrap_or(0.0);
-        let height = self.rig.travels().then_some(1);
-        let joints = self.rig.places().flat_map(|(kind, first)| first..first + kind.coordinates());
-        height.into_iter().chain(joints).map(move |index| Limit {
-            index,
-            bounds: Bounds {
-                lower: of(table.lower, index),
-                upper: of(table.upper, index),
-                speed: of(table.velocity, index) * time,
-                change: of(table.acceleration, index) * (time * time),
-            },
-            rest: of(table.rest, index),
+        let flat = |rows: &'a [[f32; 3]]| rows.as_flattened().iter();
+        let ranges = flat(table.lower).zip(flat(table.upper)).zip(flat(table.rest));
+        let rates = flat(table.velocity).zip(flat(table.acceleration));
+        ranges.zip(rates).map(move |(((lower, upper), rest), (velocity, acceleration))| {
+            let (speed, change) = (velocity * time, acceleration * (time * time));
+            let limit = Limit { bounds: Bounds { lower: *lower, upper: *upper, speed, change }, rest: *rest };
+            (*velocity > 0.0).then_some(limit)
         })
     }
 
@@ -184,7 +187,7 @@ impl<'a, const ROWS: usize> Limiter<'a, ROWS> {
     /// the whole range to go. The time that a recovery takes at most.
     pub fn recovery_frames(&self) -> u32 {
         let mut most = 0.0f32;
-        for Limit { bounds: Bounds { lower, upper, speed, change }, .. } in self.limits() {
+        for Limit { bounds: Bounds { lower, upper, speed, change }, .. } in self.limits().flatten() {
             let range = upper - lower;
             let speed = speed.min(reach(range, CATCH_UP * change));
             if speed > 0.0 {

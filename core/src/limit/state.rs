@@ -2,7 +2,6 @@
 
 use super::axis::Coordinate;
 use crate::pose::Heading;
-use crate::rig::Frame;
 
 /// Why a coordinate did not go where it was told.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -89,13 +88,6 @@ impl<const ROWS: usize> LimitState<ROWS> {
     /// Why a coordinate is not where the last frame told it to be; `None` past the last row.
     pub fn clamped(&self, index: usize) -> Option<Clamped> {
         self.clamped.as_flattened().get(index).copied()
-    }
-
-    /// The coordinates into a frame.
-    pub(super) fn show(&self, frame: &mut Frame<ROWS>, index: usize) {
-        if let (Some(x), Some(at)) = (frame.coordinates_mut().get_mut(index), self.coordinate(index)) {
-            *x = at;
-        }
     }
 }
 

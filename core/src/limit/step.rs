@@ -28,10 +28,9 @@ impl<const ROWS: usize> Limiter<'_, ROWS> {
             return;
         }
         state.heading = Some(frame.heading);
-        for Limit { index, bounds, .. } in self.limits() {
-            if let (Some(axis), Some(x)) =
-                (state.axes.as_flattened_mut().get_mut(index), frame.coordinates().get(index))
-            {
+        let axes = state.axes.as_flattened_mut().iter_mut().zip(frame.coordinates());
+        for (limit, (axis, x)) in self.limits().zip(axes) {
+            if let Some(Limit { bounds, .. }) = limit {
                 *axis = Coordinate { at: x.max(bounds.lower).min(bounds.upper), went: 0.0, left: 0.0 };
             }
         }
@@ -39,8 +38,8 @@ impl<const ROWS: usize> Limiter<'_, ROWS> {
 
     fn at_rest(&self, state: &mut LimitState<ROWS>) {
         state.started = true;
-        for Limit { index, rest, .. } in self.limits() {
-            if let Some(axis) = state.axes.as_flattened_mut().get_mut(index) {
+        for (limit, axis) in self.limits().zip(state.axes.as_flattened_mut()) {
+            if let Some(Limit { rest, .. }) = limit {
                 *axis = Coordinate { at: rest, went: 0.0, left: 0.0 };
             }
         }
@@ -70,24 +69,17 @@ impl<const ROWS: usize> Limiter<'_, ROWS> {
         }
         let decay = if state.report.gap > self.hold_frames { self.decay } else { 0.0 };
         let (mut position, mut rate) = (0u16, 0u16);
-        for Limit { index, bounds, rest } in self.limits() {
-            let target = frame.coordinates().get(index).copied().filter(|_| told);
-            let (Some(axis), Some(clamped)) =
-                (state.axes.as_flattened_mut().get_mut(index), state.clamped.as_flattened_mut().get_mut(index))
-            else {
-                break;
-            };
-            let wanted = target.unwrap_or_else(|| {
-                let last = axis.at + axis.left;
-                last + (rest - last) * decay
-            });
+        let axes = state.axes.as_flattened_mut().iter_mut().zip(state.clamped.as_flattened_mut());
+        for ((limit, (axis, clamped)), x) in self.limits().zip(axes).zip(frame.coordinates_mut()) {
+            let Some(Limit { bounds, rest }) = limit else { continue };
+            let last = axis.at + axis.left;
+            let wanted = if told { *x } else { last + (rest - last) * decay };
             let inside = wanted.max(bounds.lower).min(bounds.upper);
             *axis = axis.advance(inside, &bounds);
-            *clamped =
-                Clamped { position: (wanted - inside).abs() > CLAMPED, rate: axis.left.abs() > CLAMPED };
+            *clamped = Clamped { position: (wanted - inside).abs() > CLAMPED, rate: axis.left.abs() > CLAMPED };
             position = position.saturating_add(u16::from(clamped.position));
             rate = rate.saturating_add(u16::from(clamped.rate));
-            state.show(frame, index);
+            *x = axis.at;
         }
         if self.rig().travels() {
             rate += u16::from(self.turn(state, frame, told)) + u16::from(self.travel(state, frame, told));

@@ -42,7 +42,7 @@ impl<const ROWS: usize, const STATES: usize, N: Numbers> Translator<'_, ROWS, ST
             Linear::Fixed(linear) if N::INTEGER => linear.step(&input, state.view(), &mut output),
             _ => 0.0,
         };
-        if state.controls.apply(&output, frame, self.rows) {
+        if state.controls.apply(&mut output, frame, self.rows) {
             Timing { duration: exp2(log2) }
         } else {
             state.reset();

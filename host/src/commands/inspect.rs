@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use kinesic::Pack;
-use kinesic::model::{JointMeta, MAGIC, ModelMeta};
+use kinesic::model::{JointMeta, MAGIC, ModelMeta, VERSION};
 use kinesic_host::clip::{self, JointMap};
 use kinesic_host::components::HostComponents;
 use kinesic_host::emotion::HostEmotion;
@@ -127,7 +127,7 @@ pub struct ModelReport {
     pub figures: serde_json::Map<String, serde_json::Value>,
 }
 
-fn model(pack: &Pack, meta: &ModelMeta, joints: usize) -> miette::Result<ModelReport> {
+fn model(pack: &Pack, meta: &ModelMeta, rows: usize) -> miette::Result<ModelReport> {
     let (engine, figures) = match meta {
         ModelMeta::Translator(meta) => {
             let translator = HostTranslator::load(pack).into_diagnostic()?;
@@ -138,9 +138,9 @@ fn model(pack: &Pack, meta: &ModelMeta, joints: usize) -> miette::Result<ModelRe
                 "numbers": format!("{:?}", translator.number()).to_lowercase(),
                 "filter_states": 2 * meta.blocks,
                 "drives": meta.drives,
-                "multiply_adds_per_frame_before_kinematics": translator.multiply_adds(),
-                "capacity": format!("Translator::<{joints}, {states}>"),
-                "state_bytes": translator_state_bytes(joints, states),
+                "multiply_adds_per_frame": translator.multiply_adds(),
+                "capacity": format!("Translator::<{rows}, {states}>"),
+                "state_bytes": translator_state_bytes(rows, states),
                 "plausible_strength": meta.strength,
             });
             ("translator", figures)
@@ -163,7 +163,8 @@ fn model(pack: &Pack, meta: &ModelMeta, joints: usize) -> miette::Result<ModelRe
                 "style": meta.style,
                 "components": meta.count,
                 "stored_frames": meta.frames,
-                "multiply_adds_per_frame_before_kinematics": components.multiply_adds(),
+                "multiply_adds_per_frame": components.multiply_adds(),
+                "capacity": format!("Components::<{rows}, {}>", meta.count),
                 "plausible_strength": meta.strength,
             });
             ("components", figures)
@@ -180,7 +181,7 @@ fn model(pack: &Pack, meta: &ModelMeta, joints: usize) -> miette::Result<ModelRe
                 "components": meta.components,
                 "hidden": meta.hidden,
                 "multiply_adds_per_change_of_strength": emotion.multiply_adds(),
-                "capacity": format!("Emotion::<{joints}, {}, {width}>", meta.keyframes),
+                "capacity": format!("Emotion::<{rows}, {}, {width}>", meta.keyframes),
                 "plausible_strengths": strengths,
             });
             ("emotion", figures)
@@ -210,6 +211,7 @@ fn model(pack: &Pack, meta: &ModelMeta, joints: usize) -> miette::Result<ModelRe
                 "hold_s": f64::from(meta.hold),
                 "decay_s": f64::from(meta.decay),
                 "recovery_frames": limiter.recovery_frames(),
+                "capacity": format!("Limiter::<{rows}>"),
             });
             ("limits", figures)
         }
@@ -221,7 +223,9 @@ fn model(pack: &Pack, meta: &ModelMeta, joints: usize) -> miette::Result<ModelRe
 /// What every model in a pack needs and does, by name.
 pub fn models(pack: &Pack) -> miette::Result<Vec<ModelReport>> {
     let metadata = pack.metadata();
-    metadata.models.iter().map(|meta| model(pack, &meta, metadata.joints.len())).collect()
+    // A face has no joints, and no rig.
+    let rows = kinesic::Rig::load(pack).map_or(0, |rig| rig.rows());
+    metadata.models.iter().map(|meta| model(pack, &meta, rows)).collect()
 }
 
 fn pack(path: &Path, json: bool) -> miette::Result<()> {
@@ -248,7 +252,7 @@ fn pack(path: &Path, json: bool) -> miette::Result<()> {
     if json {
         return print_json(&report);
     }
-    println!("{}: {} pack {:?}, format 1, checksum correct", report.file, report.kind, report.name);
+    println!("{}: {} pack {:?}, format {}, checksum correct", report.file, report.kind, report.name, VERSION);
     println!("rate       {} frames a second", report.frame_rate);
     println!("size       {} bytes, of which {} are tensors, used in place", report.bytes, report.tensor_bytes);
     println!("joints     {}: {}", joints.len(), report.joints.join(", "));
@@ -287,9 +291,9 @@ fn centimetres(length: f32) -> f64 {
 }
 
 /// `size_of::<TranslatorState<JOINTS, STATES>>()`, whose parameters are known only now.
-fn translator_state_bytes(joints: usize, states: usize) -> usize {
-    // Filters, mask and strength; heading, drift and the last root with its flag.
-    4 * (states + joints + 1) + 4 * (2 + 3 + 4)
+fn translator_state_bytes(rows: usize, states: usize) -> usize {
+    // Filters, mask and strength.
+    4 * (states + 3 * rows + 1)
 }
 
 #[cfg(test)]
