@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use kinesic_host::limit::robot::{Import, Rates, Robot, RobotError, RobotMap, import};
 use kinesic_host::limit::{LimitsModel, Table};
 use kinesic_host::pack::{PackFile, Provenance};
+use kinesic_host::plain;
 use kinesic_host::prepare::{Source, fingerprint};
 use kinesic_host::rig::Rig;
 use miette::{IntoDiagnostic, WrapErr, miette};
@@ -259,7 +260,7 @@ fn print(summary: &Summary) {
                 cell(&joint.upper),
                 cell(&joint.rest)
             );
-            println!("{}", line.trim_end());
+            println!("{}", plain::line(line.trim_end()));
         }
     }
     println!("root             {} m/s, {} m/s^2", table.root_velocity, table.root_acceleration);
@@ -268,7 +269,7 @@ fn print(summary: &Summary) {
         table.hold, table.decay, table.frozen, summary.recovery_frames
     );
     for note in &summary.notes {
-        println!("note: {note}");
+        println!("note: {}", plain::line(note));
     }
     if let Some(out) = &summary.out {
         let limited = table.joints.iter().filter(|joint| joint.kind != "free").count();

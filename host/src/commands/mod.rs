@@ -95,5 +95,5 @@ pub fn run(cli: Cli) -> miette::Result<()> {
 
 /// Prints why a command failed.
 pub fn complain(report: &miette::Report) {
-    eprintln!("{report:?}");
+    say::failure(report);
 }

@@ -6,9 +6,11 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use kinesic_host::clip::Format;
-use kinesic_host::files;
+use kinesic_host::{files, plain};
 use miette::{IntoDiagnostic, WrapErr, miette};
 use serde::Serialize;
+
+use super::say;
 
 /// Writes a file whole or not at all.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> miette::Result<()> {
@@ -61,7 +63,7 @@ fn check_folder(path: &Path) -> miette::Result<()> {
 /// Prints one JSON object.
 pub fn print_json(value: &impl Serialize) -> miette::Result<()> {
     let text = serde_json::to_string_pretty(value).into_diagnostic().wrap_err("cannot write JSON")?;
-    println!("{text}");
+    say::raw(&format!("{}\n", plain::json(&text)));
     Ok(())
 }
 

@@ -6,6 +6,7 @@ use kinesic::model::AttributeMeta;
 use kinesic_host::emotion::HostEmotion;
 use kinesic_host::emotion::play::{Settings, Strengths, play, score};
 use kinesic_host::pack::PackFile;
+use kinesic_host::plain;
 use kinesic_host::rig::Rig;
 use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
@@ -133,21 +134,23 @@ fn print(summary: &Summary) {
     let [first, last] = summary.round_s;
     println!(
         "{}: {}, {} frames at {} a second, {:.2} s; {what} {first:.2} s at the start, {last:.2} s at the end; {:.2} m of way",
-        summary.out, summary.motion, summary.frames, summary.fps, summary.seconds, summary.travel_m
+        summary.out,
+        plain::line(&summary.motion),
+        summary.frames, summary.fps, summary.seconds, summary.travel_m
     );
     println!("attribute            asked             played             scores     of plausible");
     let two = |[a, b]: [f32; 2]| format!("{a:.3} .. {b:.3}");
     for attribute in &summary.attributes {
         println!(
             "{:<12} {:>16}   {:>16}   {:>16}   {:>14}",
-            attribute.name,
+            plain::line(&attribute.name),
             two(attribute.asked),
             two(attribute.played),
             two(attribute.score),
             two(attribute.plausible)
         );
         if attribute.asked != attribute.played {
-            println!("note: {}: asked for more than nearly all training motions show; held", attribute.name);
+            println!("note: {}: asked for more than nearly all training motions show; held", plain::line(&attribute.name));
         }
     }
 }
