@@ -10,7 +10,8 @@ const LONGEST: usize = 2000;
 
 /// True for characters that a terminal does not draw but obeys.
 fn obeyed(c: char) -> bool {
-    c.is_control() || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+    c.is_control()
+        || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
 fn shown<'t>(text: &'t str, kept: &[char], escape: impl Fn(char) -> String) -> Cow<'t, str> {
@@ -59,10 +60,7 @@ mod tests {
     fn a_terminal_is_sent_no_command() {
         assert_eq!(line("Röhre 2"), "Röhre 2");
         let shown = line(HOSTILE);
-        assert_eq!(
-            shown,
-            r"a\u{1b}]0;title\u{7}\u{1b}[2J\u{d}\u{a}\u{9}b\u{9b}2J\u{202e}c\u{7f}é"
-        );
+        assert_eq!(shown, r"a\u{1b}]0;title\u{7}\u{1b}[2J\u{d}\u{a}\u{9}b\u{9b}2J\u{202e}c\u{7f}é");
         assert!(!shown.contains(obeyed));
         assert_eq!(text("a\n\tb\x1b"), "a\n\tb\\u{1b}");
     }

@@ -136,7 +136,10 @@ fn print(summary: &Summary) {
         "{}: {}, {} frames at {} a second, {:.2} s; {what} {first:.2} s at the start, {last:.2} s at the end; {:.2} m of way",
         summary.out,
         plain::line(&summary.motion),
-        summary.frames, summary.fps, summary.seconds, summary.travel_m
+        summary.frames,
+        summary.fps,
+        summary.seconds,
+        summary.travel_m
     );
     println!("attribute            asked             played             scores     of plausible");
     let two = |[a, b]: [f32; 2]| format!("{a:.3} .. {b:.3}");
@@ -150,7 +153,10 @@ fn print(summary: &Summary) {
             two(attribute.plausible)
         );
         if attribute.asked != attribute.played {
-            println!("note: {}: asked for more than nearly all training motions show; held", plain::line(&attribute.name));
+            println!(
+                "note: {}: asked for more than nearly all training motions show; held",
+                plain::line(&attribute.name)
+            );
         }
     }
 }
