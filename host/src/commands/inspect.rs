@@ -8,6 +8,7 @@ use kinesic_host::clip::{self, JointMap};
 use kinesic_host::components::HostComponents;
 use kinesic_host::emotion::HostEmotion;
 use kinesic_host::face::HostFace;
+use kinesic_host::files;
 use kinesic_host::limit::HostLimiter;
 use kinesic_host::mechanics::HostMechanics;
 use kinesic_host::pack::{PackFile, Provenance};
@@ -56,7 +57,8 @@ pub fn run(args: &Args) -> miette::Result<()> {
 pub fn is_pack(path: &Path) -> bool {
     let starts = || {
         let mut head = [0; 4];
-        let read = std::fs::File::open(path).and_then(|mut file| std::io::Read::read_exact(&mut file, &mut head));
+        let open = || files::check_regular(path).and_then(|()| std::fs::File::open(path));
+        let read = open().and_then(|mut file| std::io::Read::read_exact(&mut file, &mut head));
         read.is_ok() && head == MAGIC
     };
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("kin")) || starts()

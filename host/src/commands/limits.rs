@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use kinesic_host::files;
 use kinesic_host::limit::robot::{Import, Rates, Robot, RobotError, RobotMap, import};
 use kinesic_host::limit::{LimitsModel, Table};
 use kinesic_host::pack::{PackFile, Provenance};
@@ -61,7 +62,7 @@ pub struct Args {
     #[arg(long, value_name = "RAD/S", value_parser = rate, allow_negative_numbers = true)]
     velocity: Option<f64>,
     /// Frames per second at which the limiter is stepped (default: the pack's; 60 for a clip)
-    #[arg(long, value_name = "RATE", conflicts_with = "with", value_parser = rate, allow_negative_numbers = true)]
+    #[arg(long, value_name = "RATE", conflicts_with = "with", value_parser = frame_rate, allow_negative_numbers = true)]
     fps: Option<f64>,
     /// Pack to write (.kin), or table to export (.csv, .toml, .json)
     #[arg(long, value_name = "FILE")]
@@ -75,6 +76,13 @@ fn rate(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(rate) if (1e-3..1e5).contains(&rate) => Ok(rate),
         _ => Err("expected a number above 0".to_owned()),
+    }
+}
+
+fn frame_rate(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(rate) if (1.0..=1000.0).contains(&rate) => Ok(rate),
+        _ => Err("expected 1 to 1000 frames a second".to_owned()),
     }
 }
 
@@ -139,7 +147,7 @@ fn make(args: &Args) -> miette::Result<()> {
         false => check_table(out)?,
     }
     let read = |path: &Path| {
-        std::fs::read_to_string(path).map_err(|error| {
+        files::read_text(path).map_err(|error| {
             miette!(help = "check the path; the file is text in UTF-8", "{}: cannot be read: {error}", path.display())
         })
     };

@@ -28,6 +28,7 @@ pub use face::ViewFace;
 use scene::hash;
 pub use scene::{CHECKED, STRENGTH, digest};
 
+use crate::face::warp::WarpError;
 use crate::pack::PackFile;
 use crate::prepare::{PrepareError, Source};
 use crate::rig::RigError;
@@ -118,6 +119,14 @@ pub enum ViewError {
     Face {
         /// The picture.
         name: String,
+    },
+    /// A pack moves the face in a way that no picture follows.
+    #[error("{name}: {error}")]
+    Warp {
+        /// The picture.
+        name: String,
+        /// Why.
+        error: WarpError,
     },
     /// A clip cannot be put on a pack's skeleton.
     #[error(transparent)]

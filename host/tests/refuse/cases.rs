@@ -226,7 +226,7 @@ pub const CASES: &[(&str, &str)] = &[
     ("limits robot.urdf --map robot-map.toml --skeleton weary.kin --with weary.kin --out o.kin", "cannot be used"),
     ("limits robot.urdf --map robot-map.toml --with cut.kin --out o.kin", "truncated"),
     ("limits robot.urdf --map robot-map.toml --skeleton weary.kin --out o.kin --acceleration -3", "above 0"),
-    ("limits robot.urdf --map robot-map.toml --skeleton weary.kin --out o.kin --fps 0", "above 0"),
+    ("limits robot.urdf --map robot-map.toml --skeleton weary.kin --out o.kin --fps 0", "1 to 1000"),
     ("limits robot.urdf --map gone.toml --skeleton weary.kin --out o.kin", "gone.toml"),
     ("limits robot.urdf --map map-not.toml --skeleton weary.kin --out o.kin", "not TOML"),
     ("limits robot.urdf --map map-hips.toml --skeleton weary.kin --out o.kin", "no joint 'Hips'"),

@@ -4,6 +4,7 @@ use kinesic::model::{JointMeta, Kind, ModelMeta, TensorMeta, TensorType};
 use kinesic_host::pack::{PackFile, PackWriter, Provenance};
 
 /// A pack in parts, to be changed and put together again.
+#[derive(Clone)]
 pub struct Hostile {
     pub kind: Kind,
     pub name: String,
