@@ -384,3 +384,113 @@ fn a_pack_does_not_decide_which_joints_count() {
     write(at, "m.kin", &pack);
     assert!(refused(at, "eval mechanics m.kin --clips walk.bvh").contains("of the baselines in the provenance"));
 }
+
+#[test]
+fn an_output_that_is_an_input_or_given_twice_is_refused() {
+    let folder = folder();
+    let at = folder.path();
+    std::fs::create_dir(at.join("sub")).unwrap();
+    std::os::unix::fs::symlink("walk.bvh", at.join("link.bvh")).unwrap();
+    std::fs::hard_link(at.join("walk.bvh"), at.join("hard.bvh")).unwrap();
+    std::fs::copy(at.join("walk.bvh"), at.join("n.kin")).unwrap();
+    std::fs::copy(at.join("walk.bvh"), at.join("s.bvh")).unwrap();
+    std::fs::write(at.join("e.kin"), emotions().bytes()).unwrap();
+    let contents = || {
+        let mut files: Vec<_> = std::fs::read_dir(at).unwrap().map(|entry| entry.unwrap().path()).collect();
+        files.sort();
+        files
+            .into_iter()
+            .filter(|path| path.is_file())
+            .map(|path| (std::fs::read(&path).unwrap(), path))
+            .collect::<Vec<_>>()
+    };
+    let before = contents();
+    for line in [
+        "apply weary.kin walk.bvh --out walk.bvh",
+        "apply weary.kin walk.bvh --out ./sub/../walk.bvh",
+        "apply weary.kin walk.bvh --out link.bvh",
+        "apply weary.kin link.bvh --out walk.bvh",
+        "apply weary.kin hard.bvh --out walk.bvh",
+        "export walk.bvh --out walk.bvh",
+        "quantize weary.kin --out weary.kin",
+        "modulate mechanics.kin walk.bvh --amount 2 --out walk.bvh",
+        "mix mechanics.kin --mechanics walk.bvh --expressive s.bvh --out s.bvh",
+        "blend mechanics.kin walk.bvh s.bvh --mechanics-window 0..1 --expressive-window 0..1 --out s.bvh",
+        "decouple mechanics.kin walk.bvh --mechanics walk.bvh",
+        "train translate --pair n.kin s.bvh --out n.kin",
+        "train mechanics --clips n.kin --out n.kin",
+        "train components --content walk.bvh --style n.kin --out n.kin",
+        "limits e.kin --with e.kin --out e.kin",
+    ] {
+        assert!(refused(at, line).contains("would be replaced"), "{line}");
+    }
+    for line in [
+        "decouple mechanics.kin walk.bvh --mechanics x.bvh --expressive x.bvh",
+        "decouple mechanics.kin walk.bvh --mechanics x.bvh --expressive sub/../x.bvh",
+    ] {
+        assert!(refused(at, line).contains("would be written twice"), "{line}");
+    }
+    assert!(contents() == before, "a file was changed");
+    // What is neither is replaced as ever; the rest when it is said.
+    succeed(at, "apply weary.kin walk.bvh --out o.bvh");
+    succeed(at, "apply weary.kin walk.bvh --out o.bvh");
+    succeed(at, "quantize weary.kin --out weary.kin --overwrite");
+    succeed(at, "apply weary.kin walk.bvh --out walk.bvh --overwrite");
+    assert!(std::fs::read(at.join("walk.bvh")).unwrap() != std::fs::read(at.join("s.bvh")).unwrap());
+}
+
+#[test]
+fn private_packs_and_pages_hold_no_path_and_no_command() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let secret = at.join("client-7");
+    std::fs::create_dir(&secret).unwrap();
+    for (name, manner) in [("a.bvh", Manner::NEUTRAL), ("b.bvh", Manner::WEARY)] {
+        std::fs::write(secret.join(name), walk(&manner, 2.0, 60.0, 0.0, 1).to_bvh(&WriteOptions::default()).unwrap())
+            .unwrap();
+    }
+    std::fs::write(secret.join("m.kin"), models::mechanics().bytes()).unwrap();
+    let made = [
+        "train translate --pair client-7/a.bvh client-7/b.bvh --style tired --form per-joint --order 2 --align uniform --out t.kin",
+        "train mechanics --clips client-7/a.bvh client-7/b.bvh --hidden 4 --epochs 1 --out n.kin",
+        "train components --content client-7/a.bvh --style client-7/b.bvh -k 4 --out c.kin",
+        "quantize t.kin --clips client-7/a.bvh --out q.kin",
+        "view t.kin client-7/a.bvh --target client-7/b.bvh --out v.html",
+    ];
+    let leaks = || -> Vec<String> {
+        let entries = std::fs::read_dir(at).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_file());
+        let holds = |path: &Path| String::from_utf8_lossy(&std::fs::read(path).unwrap()).contains("client-7");
+        entries.filter(|path| holds(path)).map(|path| path.display().to_string()).collect()
+    };
+    for line in made {
+        succeed(at, line);
+    }
+    // Packs, reports and the page say how they were made; a pack that is made from such a one does not.
+    assert_eq!(leaks().len(), 8, "{:?}", leaks());
+    for line in made.iter().rev() {
+        succeed(at, &format!("{line} --private"));
+    }
+    // The page was made before its pack was made again.
+    succeed(at, &format!("{} --private", made[4]));
+    succeed(at, &format!("--private {}", made[3]));
+    assert_eq!(leaks(), [] as [String; 0]);
+    // Names and digests stay.
+    let inspected = succeed(at, "inspect t.kin");
+    assert!(
+        inspected.contains("trained on a.bvh (sha256 ") && inspected.contains("left out: --private"),
+        "{inspected}"
+    );
+}
+
+#[test]
+fn nothing_panics_where_nobody_reads() {
+    let folder = folder();
+    for script in ["\"$0\" completions bash | head -1; test ${PIPESTATUS[0]} = 0", "\"$0\" completions zsh | true"] {
+        let output = Command::new("bash").args(["-c", script, KINESIC]).current_dir(&folder).output().unwrap();
+        assert!(output.status.success() && output.stderr.is_empty(), "{script}: {output:?}");
+    }
+    for line in ["completions bash > /dev/full", "inspect walk.bvh > /dev/full", "inspect walk.bvh --json > /dev/full"]
+    {
+        assert!(refused(folder.path(), line).contains("standard output cannot be written"), "{line}");
+    }
+}

@@ -7,14 +7,15 @@ use kinesic_host::limit::robot::{Import, Rates, Robot, RobotError, RobotMap, imp
 use kinesic_host::limit::{LimitsModel, Table};
 use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_host::plain;
-use kinesic_host::prepare::{Source, fingerprint};
+use kinesic_host::prepare::Source;
 use kinesic_host::rig::Rig;
 use miette::{IntoDiagnostic, WrapErr, miette};
 use serde::Serialize;
 
 use super::clips::Reading;
 use super::inspect::is_pack;
-use super::output::{check_output, command_line, print_json, write_whole};
+use super::origin::{command_line, fingerprint, made_from};
+use super::output::{check_output, print_json, write_whole};
 
 /// Frames per second of limits for a clip's skeleton.
 const FRAME_RATE: f64 = 60.0;
@@ -173,10 +174,10 @@ fn make(args: &Args) -> miette::Result<()> {
     };
     let before = args.with.as_ref().and(base.pack.as_ref());
     if let Some(earlier) = before.and_then(PackFile::provenance) {
-        provenance = Provenance { tool: provenance.tool, command: provenance.command, ..earlier };
+        provenance = Provenance { tool: provenance.tool, ..made_from(earlier, None) };
     }
     for path in [&args.file, map] {
-        provenance.inputs.push(fingerprint(path).into_diagnostic().wrap_err_with(|| path.display().to_string())?);
+        provenance.inputs.push(fingerprint(path)?);
     }
     let joints = base.rig.skeleton.joints.iter().zip(&urdf).filter(|(_, names)| !names.is_empty());
     provenance.notes.extend(joints.map(|(joint, names)| format!("limits of {}: {}", joint.name, names.join(", "))));

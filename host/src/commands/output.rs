@@ -80,17 +80,3 @@ pub fn spinner() -> ProgressBar {
     bar.enable_steady_tick(Duration::from_millis(100));
     bar
 }
-
-/// The command line as given, for the provenance. What is about checkpoints is left out: a training that goes on after a kill
-/// makes the same pack as one that was never stopped.
-pub fn command_line() -> String {
-    let quoted = |arg: String| if arg.contains(' ') { format!("'{arg}'") } else { arg };
-    // Paths need not be Unicode; `std::env::args` would panic over them.
-    let args = std::env::args_os().skip(1).map(|arg| arg.to_string_lossy().into_owned());
-    let mut seconds = false;
-    let args = args.filter(|arg| {
-        let value = std::mem::replace(&mut seconds, arg == "--checkpoint-every");
-        !(value || seconds || arg == "--resume" || arg.starts_with("--checkpoint-every="))
-    });
-    std::iter::once("kinesic".to_owned()).chain(args.map(quoted)).collect::<Vec<_>>().join(" ")
-}
