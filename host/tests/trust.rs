@@ -193,15 +193,15 @@ fn faces_that_would_leave_the_picture_are_refused() {
         write(at, "face.kin", &pack);
         assert!(refused(at, show).contains("range of strengths"));
     }
-    // Two units of a face for a unit of strength are done; two hundred strengths, or fifty units, are no face.
-    for (strength, slope, done) in [(200.0, 1.0, false), (1.0, 2.0, true), (1.0, 50.0, false)] {
+    // What nearly leaves the face is done; two hundred strengths, or as many units of a face for one strength, are no face.
+    for (strength, slope, done) in [(200.0, 0.0, false), (1.0, 1.0, true), (1.0, 2.0, false), (1.0, 50.0, false)] {
         let mut pack = parts.clone();
         pack.models.iter_mut().for_each(|model| {
             if let ModelMeta::Face(meta) = model {
                 meta.strength = [-strength, strength];
             }
         });
-        if slope > 1.0 {
+        if slope > 0.0 {
             pack.f32s("face/linear", |linear| linear.iter_mut().for_each(|x| *x = slope * x.signum()));
         }
         write(at, "face.kin", &pack);
