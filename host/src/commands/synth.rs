@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use kinesic::emotion::EmotionState;
 use kinesic::model::AttributeMeta;
 use kinesic_host::emotion::HostEmotion;
 use kinesic_host::emotion::play::{Settings, Strengths, play, score};
@@ -91,6 +92,9 @@ pub fn run(args: &Args) -> miette::Result<()> {
     if args.seconds.is_some_and(|seconds| !(seconds > 0.0 && seconds <= 3600.0)) {
         return Err(miette!("--seconds: expected more than 0, at most 3600"));
     }
+    if args.seconds.is_none() {
+        check_length(args, &emotion, &from, fps)?;
+    }
     let played = play(&pack, &Settings { from, to, fps, seconds: args.seconds }).into_diagnostic()?;
     let rig = Rig::from_pack(&pack).into_diagnostic()?;
     rig.clip(&played.poses, 1.0 / fps).write(&args.out).into_diagnostic()?;
@@ -127,6 +131,27 @@ pub fn run(args: &Args) -> miette::Result<()> {
     }
     print(&summary);
     Ok(())
+}
+
+/// Frames that are made at most where the pack alone says how long: 200 MB of them.
+const MOST_FRAMES: f64 = 40_000.0;
+
+/// Refuses a motion that lasts longer than anybody may have wanted, unless it is asked for.
+fn check_length(args: &Args, emotion: &HostEmotion, from: &Strengths, fps: f64) -> miette::Result<()> {
+    let mut state = Box::new(EmotionState::new());
+    state.strength = *from;
+    emotion.change(&mut state);
+    let rounds = if emotion.meta().cycle { 3.0 } else { 1.0 };
+    let seconds = rounds * f64::from(state.seconds());
+    if seconds * fps <= MOST_FRAMES {
+        return Ok(());
+    }
+    Err(miette!(
+        help = "say how long with --seconds, or ask for fewer frames a second with --fps",
+        "{}: the motion takes {seconds:.0} s, {:.0} frames; at most {MOST_FRAMES} are made without --seconds",
+        args.pack.display(),
+        seconds * fps
+    ))
 }
 
 fn print(summary: &Summary) {

@@ -120,6 +120,16 @@ pub enum ViewError {
         /// The picture.
         name: String,
     },
+    /// A motion is longer than a page can hold.
+    #[error("{name}: the motion has {frames:.0} frames, expected at most {most:.0}")]
+    Long {
+        /// The pack.
+        name: String,
+        /// Its frames.
+        frames: f64,
+        /// The most.
+        most: f64,
+    },
     /// A pack moves the face in a way that no picture follows.
     #[error("{name}: {error}")]
     Warp {

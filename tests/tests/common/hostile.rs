@@ -57,6 +57,12 @@ impl Hostile {
         *bytes = numbers.into_iter().flat_map(f32::to_le_bytes).collect();
     }
 
+    /// Names of the tensors of f32.
+    #[allow(dead_code, reason = "not every test changes tensors")]
+    pub fn f32_tensors(&self) -> Vec<&'static str> {
+        self.tensors.iter().filter(|(meta, _)| meta.kind == TensorType::F32).map(|(meta, _)| meta.name).collect()
+    }
+
     /// The pack.
     pub fn bytes(&self) -> Vec<u8> {
         let mut out = PackWriter::new(self.kind, &self.name, self.frame_rate);
