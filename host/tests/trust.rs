@@ -494,3 +494,23 @@ fn nothing_panics_where_nobody_reads() {
         assert!(refused(folder.path(), line).contains("standard output cannot be written"), "{line}");
     }
 }
+
+#[test]
+fn a_path_is_no_template_of_the_page() {
+    let folder = folder();
+    let at = folder.path();
+    let name = "{{data}}<img src=x onerror=window.PWN=3>";
+    std::fs::create_dir(at.join("walks {{data}}")).unwrap();
+    std::fs::copy(at.join("walk.bvh"), at.join(format!("{name}.bvh"))).unwrap();
+    let mut pack = Hostile::of(&models::weary());
+    pack.joints[3].0 = "<!--<script>{{script}}".to_owned();
+    write(at, "walks {{data}}/p.kin", &pack);
+    succeed(at, &format!("view 'walks {{{{data}}}}/p.kin' '{name}.bvh' --out 'walks {{{{data}}}}/x.html'"));
+    let html = std::fs::read_to_string(at.join("walks {{data}}/x.html")).unwrap();
+    assert_eq!((html.matches("<script").count(), html.matches("</script").count()), (2, 2));
+    assert!(!html.contains("<img") && !html.contains("<!--"));
+    let (_, data) = html.split_once("id=\"data\">").unwrap();
+    let data: serde_json::Value = serde_json::from_str(data.split_once("</script>").unwrap().0).unwrap();
+    assert_eq!(data["clips"][0]["name"], name);
+    assert_eq!(data["packs"][0]["joints"][3]["name"], "<!--<script>{{script}}");
+}

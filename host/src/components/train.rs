@@ -2,7 +2,7 @@
 
 use kinesic::pose::{Heading, World, forward};
 
-use super::count::{Choice, choose_kept, kept};
+use super::count::{Choice, choose_kept, fits, kept};
 use super::factor::{Factors, flat, unflat};
 use super::learn::{Learned, Optimiser, learn, noise};
 use super::matrix::{FRAME_RATE, Motion};
@@ -11,7 +11,7 @@ use super::model::ComponentsModel;
 use super::objective::{Bone, Objective, Terms, Weights, bones};
 use super::sparse::{Sparse, Sparsity};
 use crate::clip::Clip;
-use crate::reached::Reached;
+use crate::reached::{Reached, Unreadable};
 use crate::rig::{MAX_JOINTS, Rig};
 
 /// Mean bone error, percent, up to which an exaggerated strength counts as plausible before the bones are restored.
@@ -78,6 +78,9 @@ pub enum TrainError {
         /// `content` or `style`.
         which: &'static str,
     },
+    /// A checkpoint whose steps are none of this training.
+    #[error(transparent)]
+    Checkpoint(#[from] Unreadable),
 }
 
 /// A model and how it came about.
@@ -132,6 +135,11 @@ pub fn train_kept(
             return Err(TrainError::Still { which });
         }
     }
+    reached.check(|name, result| match name.split_once(' ') {
+        Some(("content", count)) => fits(&content, count, result),
+        Some(("style", count)) => fits(&other, count, result),
+        _ => result.iter().all(|x| x.is_finite()),
+    })?;
     let most = content.channels().min(content.frames()).min(super::play::MAX_COMPONENTS);
     let (choice, own) = match options.count {
         None => choose_kept(&content, &options.sparsity, reached),
@@ -146,6 +154,8 @@ pub fn train_kept(
     let shift: Vec<f64> = content.mean.iter().zip(&other.mean).map(|(a, b)| options.posture * (b - a)).collect();
     let mean: Vec<f64> = content.mean.iter().zip(&shift).map(|(a, b)| a + b).collect();
     let objective = Objective::new(&own.factors, &wanted.factors, &bones, &mean, content.scale, options.weights);
+    let needed = 4 + content.channels() * choice.count;
+    reached.check(|name, result| !name.starts_with("learn") || result.len() >= needed)?;
     let learned = learned(&objective, content.channels(), choice.count, &options.optimiser, reached, "learn");
     let mut model = ComponentsModel {
         style: name.to_owned(),
