@@ -204,7 +204,7 @@ fn changed_packs_are_refused_or_used_in_bounded_time_and_memory() {
         let used = used.unwrap_or_else(|_| panic!("case {case}, {}", NAMES[case as usize % packs.len()]));
         loaded += u64::from(used);
         slowest = slowest.max((begun.elapsed(), case));
-        assert!(begun.elapsed() < Duration::from_secs(10), "case {case} took {:?}", begun.elapsed());
+        assert!(begun.elapsed() < Duration::from_secs(30), "case {case} took {:?}", begun.elapsed());
     }
     println!("{cases} packs, {loaded} of them loaded; the slowest took {slowest:?}");
     assert!(loaded > cases / 5 && loaded < cases);

@@ -15,7 +15,7 @@ pub const CASES: &[(&str, &str)] = &[
     ("inspect gone.bvh", "no such file"),
     ("inspect gone.kin", "No such file"),
     ("inspect hollow", "folder"),
-    ("inspect taken.kin", "directory"),
+    ("inspect taken.kin", "a folder"),
     ("inspect walk.bvh/inside", "walk.bvh/inside"),
     ("inspect map-hips.toml", "expected a motion clip"),
     ("inspect other.csv", "Timestamp"),

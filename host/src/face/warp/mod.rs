@@ -22,8 +22,8 @@ use spline::Spline;
 
 pub use resample::ResampleError;
 
-/// Farthest that a landmark may be asked to move, in the face's unit: about half the height of a face. What folds is damped anyway.
-const FARTHEST: f64 = 2.0;
+/// Farthest that a landmark may be asked to move, in the face's unit: more than a third of the height of a face. What folds is damped anyway.
+const FARTHEST: f64 = 1.5;
 /// Least Jacobian that counts as unfolded; 1 is unchanged.
 const UNFOLDED: f64 = 0.02;
 /// First damping of the spline, and the factor by which it grows while the map folds.
@@ -44,7 +44,7 @@ pub enum WarpError {
     NoFace,
     /// Farther than any expression moves a face.
     #[error(
-        "landmark {landmark} is to move by {found:.3e} pixels, at most {most:.1} (twice the unit of the face) are warped: ask for \
+        "landmark {landmark} is to move by {found:.3e} pixels, at most {most:.1} (one and a half times the unit of the face) are warped: ask for \
          less, or check the pack"
     )]
     Far {
