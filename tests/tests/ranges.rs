@@ -118,10 +118,13 @@ fn bodies_and_gains_are_those_of_bodies() {
     }
 }
 
+/// Sets a count of a model.
+type Set = fn(&mut ModelMeta<'static>, u32);
+
 #[test]
 fn shapes_add_up_without_overflow() {
     for huge in [(1 << 20) + 1, 1 << 31, u32::MAX] {
-        let fields: [(&str, fn(&mut ModelMeta<'static>, u32)); 8] = [
+        let fields: [(&str, Set); 8] = [
             ("translator-whole-body.kin", |meta, huge| {
                 if let ModelMeta::Translator(meta) = meta {
                     meta.blocks = huge

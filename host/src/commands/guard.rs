@@ -16,15 +16,15 @@ pub fn check(matches: &ArgMatches) -> miette::Result<()> {
     while let Some((name, inner)) = at.subcommand() {
         (command, at) = (name, inner);
     }
-    let (mut inputs, mut outputs): (Vec<(&str, &PathBuf)>, Vec<(&str, &PathBuf)>) = (Vec::new(), Vec::new());
+    let (mut inputs, mut outputs): (Vec<&PathBuf>, Vec<&PathBuf>) = (Vec::new(), Vec::new());
     for id in at.ids().map(clap::Id::as_str) {
         // Arguments of other types are no files.
         let Ok(Some(paths)) = at.try_get_many::<PathBuf>(id) else { continue };
         let writes = OUTPUTS.contains(&id) || command == "decouple" && PARTS.contains(&id);
-        if writes { &mut outputs } else { &mut inputs }.extend(paths.map(|path| (id, path)));
+        if writes { &mut outputs } else { &mut inputs }.extend(paths);
     }
-    for (index, (_, out)) in outputs.iter().enumerate() {
-        if let Some((_, input)) = inputs.iter().find(|(_, input)| input.is_file() && same(input, out)) {
+    for (index, out) in outputs.iter().enumerate() {
+        if let Some(input) = inputs.iter().find(|input| input.is_file() && same(input, out)) {
             return Err(miette!(
                 help = "name another file to write, or say --overwrite to replace this one",
                 "{}: it is read and would be replaced, as {}",
@@ -32,7 +32,7 @@ pub fn check(matches: &ArgMatches) -> miette::Result<()> {
                 out.display()
             ));
         }
-        if outputs[..index].iter().any(|(_, other)| same(other, out)) {
+        if outputs[..index].iter().any(|other| same(other, out)) {
             return Err(miette!(
                 help = "name two files to write, or say --overwrite to keep the last one",
                 "{}: it would be written twice",
