@@ -17,6 +17,7 @@ pub mod limit;
 pub mod mechanics;
 pub mod models;
 pub mod pack;
+pub mod plain;
 pub mod prepare;
 pub mod quality;
 pub mod quantise;

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use sha2::{Digest, Sha256};
 
 use crate::clip::{self, Clip, JointMap, ReadError, ReadOptions, ResampleError};
+use crate::files;
 use crate::pack::InputFile;
 use crate::retarget::{RetargetError, retarget};
 use crate::rig::{Rig, RigError};
@@ -44,9 +45,14 @@ pub enum PrepareError {
         /// The cause.
         error: RetargetError,
     },
-    /// The frame rate is out of range.
-    #[error(transparent)]
-    Resample(#[from] ResampleError),
+    /// The frame rate is out of range, or there would be too many frames.
+    #[error("{}: {error}", path.display())]
+    Resample {
+        /// The file.
+        path: PathBuf,
+        /// The cause.
+        error: ResampleError,
+    },
     /// Too short to learn from or to play.
     #[error("{}: {found} frames at {fps} fps are too few, expected at least {MIN_FRAMES}", path.display())]
     TooShort {
@@ -93,7 +99,8 @@ impl Source {
 
     /// The motion on a rig, at a frame rate.
     pub fn on_rig(&self, rig: &Rig, fps: f64) -> Result<Clip, PrepareError> {
-        let clip = self.clip.resample(fps)?;
+        let refuse = |error| PrepareError::Resample { path: self.path.clone(), error };
+        let clip = self.clip.resample(fps).map_err(refuse)?;
         if clip.frames() < MIN_FRAMES {
             return Err(PrepareError::TooShort { path: self.path.clone(), found: clip.frames(), fps });
         }
@@ -108,7 +115,7 @@ impl Source {
 
 /// Path and hash of a training file, for the provenance.
 pub fn fingerprint(path: &Path) -> Result<InputFile, std::io::Error> {
-    let bytes = std::fs::read(path)?;
+    let bytes = files::read(path)?;
     let sha256 = Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
     Ok(InputFile { path: path.display().to_string(), sha256 })
 }

@@ -5,8 +5,9 @@ mod components_common;
 use components_common::{rig, walk};
 use kinesic_host::components::{
     Descent, Motion, Objective, Optimiser, Sparsity, TrainError, TrainOptions, Weights, choose, descend, gather, learn,
-    noise, pca, prune, refit, sparse, train,
+    noise, pca, prune, refit, sparse, train, train_kept,
 };
+use kinesic_host::reached::{Reached, Unreadable};
 
 fn motion() -> Motion {
     let rig = rig();
@@ -179,4 +180,39 @@ fn impossible_requests_are_refused_with_what_to_do() {
     let first = still.root[0];
     still.root.fill(first);
     assert_eq!(run(count(5), &still), TrainError::Still { which: "content" });
+}
+
+/// A checkpoint of anything.
+struct Kept(std::collections::BTreeMap<String, Vec<f64>>);
+
+impl kinesic_host::checkpoint::Keep for Kept {
+    fn earlier(&mut self) -> Option<Vec<u8>> {
+        Some(postcard::to_allocvec(&self.0).unwrap())
+    }
+}
+
+#[test]
+fn steps_of_a_checkpoint_that_are_none_of_this_training_are_refused() {
+    let rig = rig();
+    let (content, style) = (walk(&rig, 60, 1.0, 0.1), walk(&rig, 60, 1.5, 0.3));
+    let options = TrainOptions { count: Some(5), ..TrainOptions::default() };
+    let whole = |columns: f64| [vec![columns], vec![0.1; 5 * (60 + 39)]].concat();
+    for (name, result) in [
+        ("content 5", vec![]),
+        ("content 5", whole(1e9)),
+        ("content 5", whole(f64::NAN)),
+        ("content 5", whole(6.0)),
+        ("content 5", whole(0.0)),
+        ("content 5", whole(4.5)),
+        ("content 5", vec![5.0; 20]),
+        ("style 5", [whole(5.0), vec![f64::INFINITY]].concat()),
+        ("learn", vec![0.0; 3]),
+        ("learn", vec![0.0; 100]),
+        ("learn", vec![f64::NAN; 1000]),
+    ] {
+        let mut kept = Kept([(name.to_owned(), result)].into());
+        let reached = Reached::new(&mut kept).unwrap();
+        let refused = train_kept(&rig, &content, &style, "x", &options, &reached).map(drop);
+        assert_eq!(refused, Err(TrainError::Checkpoint(Unreadable)), "{name}");
+    }
 }

@@ -35,7 +35,7 @@ pub use error::ReadError;
 pub use map::{Canonical, JointMap, SkeletonMap};
 pub use mirror::MirrorError;
 pub use read::{ReadOptions, read, read_with};
-pub use resample::ResampleError;
+pub use resample::{Memory, ResampleError};
 pub use summary::Summary;
 pub use units::{Unit, UpAxis};
 pub use write::Format;

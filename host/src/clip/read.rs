@@ -6,6 +6,7 @@ use super::error::ReadError;
 use super::map::SkeletonMap;
 use super::units::{Unit, UpAxis};
 use super::{Clip, bvh, kinect};
+use crate::files;
 
 /// What the caller knows better than the file. The default lets the reader find out, and say so in the notes.
 #[derive(Clone, Debug, Default)]
@@ -53,7 +54,7 @@ pub(super) fn slurp(path: &Path) -> Result<Vec<u8>, ReadError> {
     if path.is_dir() {
         return Err(ReadError::Directory { path: path.into() });
     }
-    std::fs::read(path).map_err(|source| match source.kind() {
+    files::read(path).map_err(|source| match source.kind() {
         std::io::ErrorKind::NotFound => ReadError::NotFound { path: path.into() },
         _ => ReadError::Io { path: path.into(), error: source.to_string() },
     })

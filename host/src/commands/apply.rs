@@ -6,7 +6,7 @@ use clap::ValueEnum;
 use kinesic::engine::Controls;
 use kinesic::model::ModelMeta;
 use kinesic::{Pack, Pose};
-use kinesic_host::clip::Clip;
+use kinesic_host::clip::{Clip, Memory};
 use kinesic_host::components;
 use kinesic_host::pack::PackFile;
 use kinesic_host::prepare::Source;
@@ -146,6 +146,21 @@ struct Played {
     plausible: [f32; 2],
 }
 
+/// Refuses a clip that the pack's clock may make too long. Each frame lasts `2^log2` frames, between the ends of the clock's range, to
+/// the power of the strength.
+fn check_length(args: &Args, pack: &Pack, clip: &Clip) -> miette::Result<()> {
+    let timing = pack.slice::<[f32; 3]>("translate/timing", 1).into_diagnostic()?;
+    let farthest = timing.iter().flat_map(|[_, low, high]| [low, high]).map(|end| end.abs()).fold(0.0, f32::max);
+    let wanted = clip.frames() as f64 * f64::from(farthest * args.strength.abs()).exp2();
+    Memory::check(clip.frames(), wanted, clip.skeleton.len()).map_err(|memory| {
+        miette!(
+            help = "cut the clip, ask for less strength, or keep the clip's timing: --timing keep",
+            "--timing learned: {}: the {wanted:.0} frames that its clock may make of this clip {memory}",
+            args.pack.display()
+        )
+    })
+}
+
 /// Plays with the engine that the pack holds.
 fn play(
     args: &Args,
@@ -160,6 +175,9 @@ fn play(
             Clock::Keep => Timing::Keep,
             Clock::Learned => Timing::Learned,
         };
+        if let Timing::Learned = timing {
+            check_length(args, pack, clip)?;
+        }
         let poses = translate::play(pack, rig, &rig.poses(clip), &translate::Settings { controls, timing });
         return Ok(Played { poses: poses.into_diagnostic()?, plausible: meta.strength });
     }

@@ -1,9 +1,11 @@
 //! Arguments that name clips and pairs of clips.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use kinesic_host::clip::{ReadOptions, SkeletonMap, Unit, UpAxis};
+use kinesic_host::files;
 use kinesic_host::prepare::fingerprint;
 use miette::{IntoDiagnostic, miette};
 
@@ -69,7 +71,8 @@ impl Pairs {
 
     fn rows_of(&self, table: &Path) -> miette::Result<Vec<(PathBuf, PathBuf)>> {
         let refuse = |error: csv::Error| miette!("{}: cannot be read: {error}", table.display());
-        let mut reader = csv::ReaderBuilder::new().delimiter(b'\t').quoting(false).from_path(table).map_err(refuse)?;
+        let bytes = files::read(table).map_err(|error| refuse(error.into()))?;
+        let mut reader = csv::ReaderBuilder::new().delimiter(b'\t').quoting(false).from_reader(&bytes[..]);
         let headers = reader.headers().map_err(refuse)?.clone();
         let column = |name: &str| {
             headers.iter().position(|header| header == name).ok_or_else(|| {
@@ -111,6 +114,7 @@ impl Pairs {
 /// `manifest.tsv:label=body-mechanics,skeleton=cmu31` (the rows that fulfil all conditions).
 pub fn clip_paths(sets: &[PathBuf]) -> miette::Result<Vec<PathBuf>> {
     let mut paths: Vec<PathBuf> = Vec::new();
+    let mut known: HashSet<PathBuf> = HashSet::new();
     for set in sets {
         let text = set.display().to_string();
         let found = if set.is_dir() {
@@ -121,7 +125,7 @@ pub fn clip_paths(sets: &[PathBuf]) -> miette::Result<Vec<PathBuf>> {
             vec![set.clone()]
         };
         for path in found {
-            if !paths.contains(&path) {
+            if known.insert(path.clone()) {
                 paths.push(path);
             }
         }
@@ -148,7 +152,8 @@ fn folder_clips(folder: &Path) -> miette::Result<Vec<PathBuf>> {
 
 fn table_clips(table: &Path, conditions: &str) -> miette::Result<Vec<PathBuf>> {
     let refuse = |error: csv::Error| miette!("{}: cannot be read: {error}", table.display());
-    let mut reader = csv::ReaderBuilder::new().delimiter(b'\t').quoting(false).from_path(table).map_err(refuse)?;
+    let bytes = files::read(table).map_err(|error| refuse(error.into()))?;
+    let mut reader = csv::ReaderBuilder::new().delimiter(b'\t').quoting(false).from_reader(&bytes[..]);
     let headers = reader.headers().map_err(refuse)?.clone();
     let column = |name: &str| {
         headers.iter().position(|header| header == name).ok_or_else(|| {

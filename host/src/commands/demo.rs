@@ -17,7 +17,8 @@ use kinesic_host::translate::{
 use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
 
-use super::output::{command_line, print_json, spinner, write_whole};
+use super::origin::command_line;
+use super::output::{print_json, spinner, write_whole};
 
 /// Show the whole way: make two manners of walking, learn the difference, pack it, play an unseen walk frame by frame
 ///

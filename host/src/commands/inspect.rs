@@ -8,9 +8,11 @@ use kinesic_host::clip::{self, JointMap};
 use kinesic_host::components::HostComponents;
 use kinesic_host::emotion::HostEmotion;
 use kinesic_host::face::HostFace;
+use kinesic_host::files;
 use kinesic_host::limit::{HostLimiter, LimitsModel};
 use kinesic_host::mechanics::HostMechanics;
 use kinesic_host::pack::{PackFile, Provenance};
+use kinesic_host::plain::line;
 use kinesic_host::rig::Rig;
 use kinesic_host::translate::HostTranslator;
 use miette::IntoDiagnostic;
@@ -55,7 +57,8 @@ pub fn run(args: &Args) -> miette::Result<()> {
 pub fn is_pack(path: &Path) -> bool {
     let starts = || {
         let mut head = [0; 4];
-        let read = std::fs::File::open(path).and_then(|mut file| std::io::Read::read_exact(&mut file, &mut head));
+        let open = || files::check_regular(path).and_then(|()| std::fs::File::open(path));
+        let read = open().and_then(|mut file| std::io::Read::read_exact(&mut file, &mut head));
         read.is_ok() && head == MAGIC
     };
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("kin")) || starts()
@@ -96,9 +99,9 @@ fn clip(args: &Args) -> miette::Result<()> {
     let layout = map.as_ref().map_or("unknown names: give a skeleton map with --map (see --help)", JointMap::layout);
     println!("skeleton   {} joints, {layout}, about {:.2} m from pelvis chain and legs", s.joints, s.height_m);
     println!("height     joints between {:.2} m and {:.2} m", s.vertical_m[0], s.vertical_m[1]);
-    println!("joints     {}", report.joint_names.join(", "));
+    println!("joints     {}", line(&report.joint_names.join(", ")));
     for note in &s.notes {
-        println!("note: {note}");
+        println!("note: {}", line(note));
     }
     Ok(())
 }
@@ -255,31 +258,32 @@ fn pack(path: &Path, json: bool) -> miette::Result<()> {
     println!("{}: {} pack {:?}, format {}, checksum correct", report.file, report.kind, report.name, VERSION);
     println!("rate       {} frames a second", report.frame_rate);
     println!("size       {} bytes, of which {} are tensors, used in place", report.bytes, report.tensor_bytes);
-    println!("joints     {}: {}", joints.len(), report.joints.join(", "));
+    println!("joints     {}: {}", joints.len(), line(&report.joints.join(", ")));
     for m in &report.models {
         println!("model      {}", m.engine);
         for (name, value) in &m.figures {
             println!(
                 "           {:<42} {}",
                 name.replace('_', " "),
-                value.as_str().map_or(value.to_string(), str::to_owned)
+                line(&value.as_str().map_or(value.to_string(), str::to_owned))
             );
         }
     }
     println!("tensors");
     for (name, kind, [rows, columns]) in &report.tensors {
-        println!("           {name:<28} {kind} {rows} x {columns}");
+        println!("           {:<28} {kind} {rows} x {columns}", line(name));
     }
     if let Some(provenance) = &report.provenance {
-        println!("made by    {} with: {}", provenance.tool, provenance.command);
+        println!("made by    {} with: {}", line(&provenance.tool), line(&provenance.command));
         for input in &provenance.inputs {
-            println!("trained on {} (sha256 {})", input.path, input.sha256.chars().take(16).collect::<String>());
+            let digest: String = input.sha256.chars().take(16).collect();
+            println!("trained on {} (sha256 {})", line(&input.path), line(&digest));
         }
         for metric in &provenance.metrics {
-            println!("           {:<24} {:.2}", metric.name, metric.value);
+            println!("           {:<24} {:.2}", line(&metric.name), metric.value);
         }
         for note in &provenance.notes {
-            println!("note: {note}");
+            println!("note: {}", line(note));
         }
     }
     Ok(())

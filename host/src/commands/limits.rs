@@ -2,17 +2,20 @@
 
 use std::path::{Path, PathBuf};
 
+use kinesic_host::files;
 use kinesic_host::limit::robot::{Import, Rates, Robot, RobotError, RobotMap, import};
 use kinesic_host::limit::{LimitsModel, Table};
 use kinesic_host::pack::{PackFile, Provenance};
-use kinesic_host::prepare::{Source, fingerprint};
+use kinesic_host::plain;
+use kinesic_host::prepare::Source;
 use kinesic_host::rig::Rig;
 use miette::{IntoDiagnostic, WrapErr, miette};
 use serde::Serialize;
 
 use super::clips::Reading;
 use super::inspect::is_pack;
-use super::output::{check_output, command_line, print_json, write_whole};
+use super::origin::{command_line, fingerprint, made_from};
+use super::output::{check_output, print_json, write_whole};
 
 /// Frames per second of limits for a clip's skeleton.
 const FRAME_RATE: f64 = 60.0;
@@ -61,7 +64,7 @@ pub struct Args {
     #[arg(long, value_name = "RAD/S", value_parser = rate, allow_negative_numbers = true)]
     velocity: Option<f64>,
     /// Frames per second at which the limiter is stepped (default: the pack's; 60 for a clip)
-    #[arg(long, value_name = "RATE", conflicts_with = "with", value_parser = rate, allow_negative_numbers = true)]
+    #[arg(long, value_name = "RATE", conflicts_with = "with", value_parser = frame_rate, allow_negative_numbers = true)]
     fps: Option<f64>,
     /// Pack to write (.kin), or table to export (.csv, .toml, .json)
     #[arg(long, value_name = "FILE")]
@@ -75,6 +78,13 @@ fn rate(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(rate) if (1e-3..1e5).contains(&rate) => Ok(rate),
         _ => Err("expected a number above 0".to_owned()),
+    }
+}
+
+fn frame_rate(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(rate) if (1.0..=1000.0).contains(&rate) => Ok(rate),
+        _ => Err("expected 1 to 1000 frames a second".to_owned()),
     }
 }
 
@@ -139,7 +149,7 @@ fn make(args: &Args) -> miette::Result<()> {
         false => check_table(out)?,
     }
     let read = |path: &Path| {
-        std::fs::read_to_string(path).map_err(|error| {
+        files::read_text(path).map_err(|error| {
             miette!(help = "check the path; the file is text in UTF-8", "{}: cannot be read: {error}", path.display())
         })
     };
@@ -175,10 +185,10 @@ fn make(args: &Args) -> miette::Result<()> {
         })?;
     }
     if let Some(earlier) = before.and_then(PackFile::provenance) {
-        provenance = Provenance { tool: provenance.tool, command: provenance.command, ..earlier };
+        provenance = Provenance { tool: provenance.tool, ..made_from(earlier, None) };
     }
     for path in [&args.file, map] {
-        provenance.inputs.push(fingerprint(path).into_diagnostic().wrap_err_with(|| path.display().to_string())?);
+        provenance.inputs.push(fingerprint(path)?);
     }
     let joints = base.rig.skeleton.joints.iter().zip(&urdf).filter(|(_, names)| !names.is_empty());
     provenance.notes.extend(joints.map(|(joint, names)| format!("limits of {}: {}", joint.name, names.join(", "))));
@@ -270,7 +280,7 @@ fn print(summary: &Summary) {
                 cell(&joint.upper),
                 cell(&joint.rest)
             );
-            println!("{}", line.trim_end());
+            println!("{}", plain::line(line.trim_end()));
         }
     }
     let height = &table.height;
@@ -290,7 +300,7 @@ fn print(summary: &Summary) {
         table.hold, table.decay, summary.recovery_frames
     );
     for note in &summary.notes {
-        println!("note: {note}");
+        println!("note: {}", plain::line(note));
     }
     if let Some(out) = &summary.out {
         let limited = table.joints.iter().filter(|joint| !joint.lower.is_empty()).count();

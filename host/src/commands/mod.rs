@@ -13,11 +13,13 @@ mod eval;
 mod export;
 mod expression;
 mod face;
+mod guard;
 mod inspect;
 mod limits;
 mod mask;
 mod mix;
 mod modulate;
+mod origin;
 mod output;
 mod pictures;
 mod precision;
@@ -27,7 +29,7 @@ mod synth;
 mod train;
 mod view;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 /// Learn how a motion is performed on a workstation; perform it frame by frame on a microcontroller.
 ///
@@ -37,6 +39,12 @@ use clap::{Parser, Subcommand};
 pub struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
+    /// Write even over a file that this command reads, or twice to one file
+    #[arg(long, global = true)]
+    overwrite: bool,
+    /// Leave paths and command lines out of packs and pages; names of files and their digests stay
+    #[arg(long, global = true)]
+    private: bool,
 }
 
 const EXAMPLES: &str = "\
@@ -70,8 +78,14 @@ enum Command {
     Synth(synth::Args),
 }
 
-/// Runs a command line.
-pub fn run(cli: Cli) -> miette::Result<()> {
+/// Runs the command line of the process.
+pub fn run() -> miette::Result<()> {
+    let matches = Cli::command().get_matches();
+    let cli = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
+    if !cli.overwrite {
+        guard::check(&matches)?;
+    }
+    origin::keep_private(cli.private);
     match cli.command.unwrap_or_else(|| Command::Demo(demo::Args::default())) {
         Command::Demo(args) => demo::run(&args),
         Command::Inspect(args) => inspect::run(&args),
@@ -95,5 +109,5 @@ pub fn run(cli: Cli) -> miette::Result<()> {
 
 /// Prints why a command failed.
 pub fn complain(report: &miette::Report) {
-    eprintln!("{report:?}");
+    say::failure(report);
 }

@@ -14,7 +14,8 @@ use serde::Serialize;
 
 use super::clips::{Reading, clip_paths};
 use super::inspect::is_pack;
-use super::output::{check_output, command_line, print_json, spinner, write_whole};
+use super::origin::command_line;
+use super::output::{check_output, print_json, spinner, write_whole};
 use super::pictures::{Photographed, photographed};
 
 /// Make a page on which packs play clips, emotions and faces, live: one HTML file that opens from disk

@@ -4,7 +4,7 @@ use faer::{Mat, MatRef};
 use nalgebra::{Matrix3, SymmetricEigen};
 
 use super::factor::{Factors, column_mut};
-use crate::vector::{Work, dot, vectorised};
+use crate::vector::{Work, dot, oriented, vectorised};
 
 /// `count` components, from the three main directions of every joint, joined pair by pair where it costs least.
 ///
@@ -64,6 +64,7 @@ fn single(motion: MatRef<'_, f64>) -> Vec<Part> {
         });
         let eigen = SymmetricEigen::new(scatter);
         for (energy, direction) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+            let direction = oriented(direction.iter().copied().collect());
             if *energy <= 1e-12 * total {
                 continue;
             }

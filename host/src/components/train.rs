@@ -3,7 +3,7 @@
 use faer::Mat;
 use kinesic::model::LoadError;
 
-use super::count::{Choice, choose_kept, kept};
+use super::count::{Choice, choose_kept, fits, kept};
 use super::degrees::{Degrees, aligned_degrees};
 use super::factor::{Factors, column, column_mut, flat, unflat};
 use super::learn::{Learned, Optimiser, learn, noise};
@@ -16,7 +16,7 @@ use super::sparse::{Sparse, Sparsity};
 use crate::align::AlignError;
 use crate::clip::Clip;
 use crate::pack::{PackFile, Provenance};
-use crate::reached::Reached;
+use crate::reached::{Reached, Unreadable};
 use crate::rig::{HostFrame, Rig};
 
 /// At a plausible strength the fastest joint is at most so many times faster than the fastest of the training clips.
@@ -89,6 +89,9 @@ pub enum TrainError {
     /// The device's code refuses the model.
     #[error("the device refuses the model: {0}")]
     Refused(#[from] LoadError),
+    /// A checkpoint whose steps are none of this training.
+    #[error(transparent)]
+    Checkpoint(#[from] Unreadable),
 }
 
 /// A model and how it came about.
@@ -147,6 +150,11 @@ pub fn train_kept(
             return Err(TrainError::Still { which });
         }
     }
+    reached.check(|name, result| match name.split_once(' ') {
+        Some(("content", count)) => fits(&content, count, result),
+        Some(("style", count)) => fits(&other, count, result),
+        _ => result.iter().all(|x| x.is_finite()),
+    })?;
     let most = content.channels().min(content.frames()).min(super::play::MAX_COMPONENTS);
     let (choice, own) = match options.count {
         None => choose_kept(&content, &options.sparsity, reached),
@@ -160,6 +168,8 @@ pub fn train_kept(
     let shift: Vec<f64> = content.mean.iter().zip(&other.mean).map(|(a, b)| options.posture * (b - a)).collect();
     let objective = Objective::new(&own.factors, &wanted.factors, options.weights);
     let start = || start(&own.factors, &wanted.factors, options.optimiser.seed);
+    let needed = 4 + content.channels() * choice.count;
+    reached.check(|name, result| !name.starts_with("learn") || result.len() >= needed)?;
     let learned = learned(&objective, start, &options.optimiser, reached, "learn");
     let mut model = ComponentsModel {
         style: name.to_owned(),

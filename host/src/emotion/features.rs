@@ -5,6 +5,7 @@ use faer::{Mat, Side};
 use super::keyframes::Keyframes;
 use super::samples::Samples;
 use super::segment::Segment;
+use crate::vector::oriented;
 
 /// Positions, m, then velocities since the keyframe before, m/s, keyframe by keyframe: `[keyframes x 6 joints]`. The first
 /// keyframe has the second's velocity. `None` if the motion has fewer frames than keyframes.
@@ -62,7 +63,7 @@ impl Projection {
             // Ascending in faer.
             for k in (channels - count..channels).rev() {
                 kept += eigen.S()[k].max(0.0);
-                projection.components.extend((0..channels).map(|c| eigen.U()[(c, k)]));
+                projection.components.extend(oriented((0..channels).map(|c| eigen.U()[(c, k)]).collect()));
             }
             projection.explained = if total > 0.0 { kept / total } else { 1.0 };
         }

@@ -77,7 +77,7 @@ pub enum LandmarksFault {
 /// `smile` is looked for as `smile`, then as `posed_smile`, then as `smile_true`; an empty cell is a face that nobody judged.
 pub fn read(path: &Path, attribute: Option<&str>) -> Result<Vec<Face>, LandmarksError> {
     let refuse = |fault| LandmarksError { path: path.to_owned(), fault };
-    let bytes = std::fs::read(path).map_err(|error| refuse(LandmarksFault::Io { error: error.to_string() }))?;
+    let bytes = crate::files::read(path).map_err(|error| refuse(LandmarksFault::Io { error: error.to_string() }))?;
     parse(&bytes, attribute).map_err(refuse)
 }
 

@@ -30,6 +30,9 @@ pub struct ClipReport {
     pub expressive_deg: f64,
 }
 
+/// Figures that are not measured here but come from the pack: whoever made it says so.
+pub const STATED: [&str; 3] = ["autoencoder_mse", "linear_deg", "mean_pose_deg"];
+
 /// Means over all frames, and every clip.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
@@ -45,8 +48,26 @@ pub struct Report {
     pub mean_pose_deg: f64,
     /// Angle of `E*`.
     pub expressive_deg: f64,
+    /// Joints that move in these clips, all but the hips: the means are over them. 0: nothing was measured.
+    pub moving_joints: usize,
+    /// [`STATED`].
+    pub as_the_pack_states: [&'static str; 3],
     /// Every clip.
     pub clips: Vec<ClipReport>,
+}
+
+/// Degrees by which a joint turns in a clip at least to count as moving: fingers that were not recorded, and helper joints, would only
+/// dilute a mean.
+const MOVES: f32 = 1.0;
+
+/// Which joints (but the hips) move in at least one of the clips. The clips say so, not the pack that is measured.
+fn moving<const JOINTS: usize>(clips: &[Vec<Pose<JOINTS>>], joints: usize) -> Vec<bool> {
+    let turns = |joint: usize, poses: &Vec<Pose<JOINTS>>| {
+        let rotations = || poses.iter().map(|pose| pose.rotations[joint]);
+        let first = rotations().next();
+        first.is_some_and(|first| rotations().any(|q| angle(&(first.inverse() * q)).to_degrees() > MOVES))
+    };
+    (1..joints).map(|joint| clips.iter().any(|poses| turns(joint, poses))).collect()
 }
 
 /// Runs every clip `(name, clip on the rig, trained on)` through the device's code.
@@ -59,30 +80,37 @@ pub fn evaluate(
 ) -> Result<Report, LoadError> {
     let model = HostMechanics::load(pack)?;
     let linear = Linear { weights: baselines.affine.clone() };
-    let moving = linear.moving();
+    let joints = rig.joints();
+    let outputs = 4 * joints.saturating_sub(1);
+    for (found, expected) in [(baselines.affine.len(), (FEATURES + 1) * outputs), (baselines.offset.len(), outputs)] {
+        if found != expected {
+            return Err(LoadError::Shape { tensor: "of the baselines in the provenance", found, expected });
+        }
+    }
+    let posed: Vec<Vec<Pose<_>>> = clips.iter().map(|(_, clip, _)| rig.poses(clip)).collect();
+    let moving = moving(&posed, joints);
     let (mean, scale): (&[f32], &[f32]) =
         (pack.slice("mechanics/feature_mean", FEATURES)?, pack.slice("mechanics/feature_inverse_deviation", FEATURES)?);
     let normalised = |features: &[f32; FEATURES]| {
         let columns = features.iter().zip(mean).zip(scale);
         columns.map(|((x, mean), scale)| ((x - mean) * scale).clamp(-6.0, 6.0)).collect::<Vec<f32>>()
     };
-    let joints = rig.joints();
     let mut reports = Vec::new();
     let (mut squares, mut count) = (0.0, 0usize);
-    for (name, clip, trained_on) in clips {
+    for ((name, clip, trained_on), poses) in clips.iter().zip(&posed) {
         let mut state = Box::new(kinesic::MechanicsState::new());
         let mut parts = kinesic::mechanics::Decoupled::identity();
         let mut mechanics = Pose::identity();
         let (mut predicted, mut regressed, mut observed) = (Vec::new(), Vec::new(), Vec::new());
         let mut left = 0.0;
-        for pose in rig.poses(clip) {
-            model.step(&mut state, &pose, &mut parts);
-            model.predict(state.features(), &pose, &mut mechanics);
+        for pose in poses {
+            model.step(&mut state, pose, &mut parts);
+            model.predict(state.features(), pose, &mut mechanics);
             let row = |pose: &Pose<_>| {
                 pose.rotations[1..joints].iter().flat_map(|q| q.coords.as_slice().to_vec()).collect::<Vec<f32>>()
             };
             predicted.extend(row(&mechanics));
-            observed.extend(row(&pose));
+            observed.extend(row(pose));
             regressed.extend(linear.apply(&normalised(state.features())));
             left += parts.expressive[1..joints]
                 .iter()
@@ -117,6 +145,8 @@ pub fn evaluate(
         linear_deg: mean(|r| r.linear_deg),
         mean_pose_deg: mean(|r| r.mean_pose_deg),
         expressive_deg: mean(|r| r.expressive_deg),
+        moving_joints: moving.iter().filter(|moves| **moves).count(),
+        as_the_pack_states: STATED,
         clips: reports,
     })
 }

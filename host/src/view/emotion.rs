@@ -13,6 +13,9 @@ use crate::rig::{MAX_JOINTS, Rig};
 /// How long the last pose of a motion that ends is shown, s.
 const STANDS: f32 = 1.0;
 
+/// Frames that a page holds at most: half an hour at 60 per second.
+const MOST_FRAMES: f64 = 108_000.0;
+
 /// An emotion pack as the scripts read it.
 #[derive(Serialize)]
 pub(super) struct EmotionData {
@@ -57,6 +60,10 @@ pub(super) fn data(of: &ViewPack) -> Result<EmotionData, ViewError> {
         true => CHECKED / 2,
         false => CHECKED.min((seconds(&model, &start) * rate) as usize) / 2,
     };
+    let seconds = (!meta.cycle).then(|| longest(&model) + STANDS);
+    if let Some(frames) = seconds.map(|seconds| f64::from(seconds * rate)).filter(|frames| *frames > MOST_FRAMES) {
+        return Err(ViewError::Long { name: of.name.clone(), frames, most: MOST_FRAMES });
+    }
     let played = |to: &Strengths| digest(&play(&model, &rig, &start, frame, to), rig.joints());
     let attributes = meta.attributes.iter().flatten().zip(start);
     let attributes = attributes.map(|(attribute, start)| AttributeData {
@@ -68,7 +75,7 @@ pub(super) fn data(of: &ViewPack) -> Result<EmotionData, ViewError> {
         body: BodyData::new(&of.name, &pack, of.file.bytes(), &rig),
         motion: meta.motion.to_owned(),
         attributes: attributes.collect(),
-        seconds: (!meta.cycle).then(|| longest(&model) + STANDS),
+        seconds,
         change: ChangeData { frame, strength: strong[..model.attributes()].to_vec() },
         digests: [&start, &strong].map(played),
     })

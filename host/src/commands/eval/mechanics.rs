@@ -13,8 +13,9 @@ use crate::commands::output::{print_json, spinner};
 
 /// Measure how near the predicted pose is, and how much expression is left, clip by clip
 ///
-/// Angles are geodesic, means over the joints that move and over all frames. Beside the pack: linear regression from the same
-/// features, and the mean pose, both fitted on the pack's training clips.
+/// Angles are geodesic, means over the joints that move in these clips (by a degree or more) and over all frames. Beside the pack:
+/// linear regression from the same features, and the mean pose, both fitted on the pack's training clips. These two are not measured
+/// here: they are what the pack states.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -33,7 +34,8 @@ pub struct Args {
     /// Random seed; the measurement makes no random choice
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Print one JSON object: autoencoder_mse, stacked_mse, geodesic_deg, linear_deg, mean_pose_deg, expressive_deg, and every clip
+    /// Print one JSON object: autoencoder_mse, stacked_mse, geodesic_deg, linear_deg, mean_pose_deg, expressive_deg, moving_joints,
+    /// as_the_pack_states, and every clip
     #[arg(long)]
     json: bool,
     #[command(flatten)]
@@ -74,6 +76,13 @@ pub fn run(args: &Args) -> miette::Result<()> {
     bar.set_message("playing");
     let report = evaluate(&pack, &rig, &provenance.baselines, &provenance.metrics, &clips).into_diagnostic()?;
     bar.finish_and_clear();
+    if report.moving_joints == 0 {
+        return Err(miette!(
+            help = "name clips of motions",
+            "{}: no joint turns by a degree or more in these clips: there is nothing to predict",
+            args.pack.display()
+        ));
+    }
     if args.json {
         return print_json(&report);
     }
@@ -82,7 +91,11 @@ pub fn run(args: &Args) -> miette::Result<()> {
 }
 
 fn print(report: &Report) {
-    println!("degrees a joint: predicted pose, linear regression, mean pose; expression left");
+    println!(
+        "degrees a joint, over the {} joints that move in these clips: predicted pose; linear regression and mean pose as the pack \
+         states them; expression left",
+        report.moving_joints
+    );
     println!("{:>9} {:>9} {:>9} {:>10}   clip", "predicted", "linear", "mean", "expression");
     let row = |[a, b, c, d]: [f64; 4], name: &str| println!("{a:9.2} {b:9.2} {c:9.2} {d:10.2}   {name}");
     for clip in &report.clips {

@@ -15,7 +15,8 @@ use crate::commands::output::{print_json, spinner};
 ///
 /// Every source is played through the device's code and compared with its target, both on the pack's skeleton, in
 /// heading-local coordinates without horizontal root movement, at the best alignment in time. Beside it: the source itself
-/// (identity), and the mean offset and the best affine map of each joint, fitted on the pack's training pairs.
+/// (identity), and the mean offset and the best affine map of each joint, fitted on the pack's training pairs: these two are not
+/// fitted here but what the pack states.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -69,7 +70,9 @@ pub fn run(args: &Args) -> miette::Result<()> {
 }
 
 fn print(report: &Report) {
-    println!("aligned RMS joint distance to the target, cm (in brackets: with open ends)");
+    println!(
+        "aligned RMS joint distance to the target, cm (in brackets: with open ends); offset and affine as the pack states them"
+    );
     println!("{:>15} {:>15} {:>15} {:>15}   pair", "identity", "offset", "affine", "pack");
     let row = |e: &Errors, name: String| {
         let cell = |closed: f64, open: f64| format!("{closed:.2} ({open:.2})");

@@ -6,16 +6,17 @@ use kinesic_host::components::{
     FRAME_RATE, Optimiser, RECORDED, Report, Sparsity, TradeOff, TrainOptions, Trained, Weights, evaluate, trade_off,
     train_kept,
 };
-use kinesic_host::pack::{InputFile, Metric, PackFile, Provenance};
-use kinesic_host::prepare::{Source, fingerprint};
+use kinesic_host::pack::{Metric, PackFile, Provenance};
+use kinesic_host::prepare::Source;
 use kinesic_host::reached::Reached;
-use miette::{IntoDiagnostic, WrapErr};
+use miette::IntoDiagnostic;
 use serde::Serialize;
 
 use super::report::{ReportArgs, components::page};
 use super::resume::ResumeArgs;
 use crate::commands::clips::Reading;
-use crate::commands::output::{check_output, command_line, print_json, spinner, write_whole};
+use crate::commands::origin::{command_line, fingerprints};
+use crate::commands::output::{check_output, print_json, spinner, write_whole};
 use crate::commands::precision::Precision;
 
 /// Style weights of the trade-off curve.
@@ -118,10 +119,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     bar.set_message("factorising and learning");
     let options = args.options();
     let name = args.name.clone().unwrap_or_else(|| file_stem(&args.out));
-    let prints: Vec<InputFile> = [&args.content, &args.style]
-        .into_iter()
-        .map(|path| fingerprint(path).into_diagnostic().wrap_err_with(|| path.display().to_string()))
-        .collect::<Result<_, _>>()?;
+    let prints = fingerprints([args.content.as_path(), args.style.as_path()])?;
     // The same options and the same clips, read in the same way: the same training.
     let deciding = [format!("components {options:?} {}", args.curve), format!("{prints:?}"), args.reading.deciding()?];
     let mut checkpoint = args.resume.checkpoint(&args.out, &deciding)?;

@@ -9,14 +9,15 @@ use kinesic_host::emotion::motions::{Example, hold_out, read};
 use kinesic_host::emotion::segment::Cut;
 use kinesic_host::emotion::{TrainOptions, Trained, train};
 use kinesic_host::pack::{Metric, PackFile, Provenance};
-use kinesic_host::prepare::{Source, fingerprint};
+use kinesic_host::prepare::Source;
 use kinesic_host::rig::Rig;
 use miette::{IntoDiagnostic, WrapErr, miette};
 use serde::Serialize;
 
 use super::report::{ReportArgs, emotion::page};
 use crate::commands::clips::Reading;
-use crate::commands::output::{check_output, command_line, print_json, spinner, write_whole};
+use crate::commands::origin::{command_line, fingerprints, name_of};
+use crate::commands::output::{check_output, print_json, spinner, write_whole};
 
 /// Learn how strongly motions show emotions, and how a motion looks at every strength
 ///
@@ -111,14 +112,13 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let attributes = args.attributes()?;
     let rows = labels::read(&args.labels, &attributes).into_diagnostic()?;
     let out = hold_out(&rows, args.hold_out, args.seed);
-    let inputs = rows.iter().map(|row| row.path.as_path()).chain([args.labels.as_path()]);
-    let inputs = inputs.map(|path| fingerprint(path).into_diagnostic().wrap_err_with(|| path.display().to_string()));
-    let inputs = inputs.collect::<miette::Result<Vec<_>>>()?;
+    let inputs = fingerprints(rows.iter().map(|row| row.path.as_path()).chain([args.labels.as_path()]))?;
     let reading = args.reading.options()?;
     let bar = spinner();
     let all = rows.len();
     let progress = |index: usize| bar.set_message(format!("reading clip {} of {all}", index + 1));
-    let (rig, examples) = read(rows, args.rig(&reading)?, &reading, &progress).into_diagnostic()?;
+    let (rig, mut examples) = read(rows, args.rig(&reading)?, &reading, &progress).into_diagnostic()?;
+    examples.iter_mut().for_each(|example| example.name = name_of(&example.name));
     // The table has rows, so there is a first clip.
     let rig = rig.ok_or_else(|| miette!("{}: there is no clip", args.labels.display()))?;
     let part = |held: bool| {

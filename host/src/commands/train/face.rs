@@ -5,12 +5,12 @@ use std::path::PathBuf;
 use kinesic_host::face::landmarks;
 use kinesic_host::face::{Face, Report, TrainOptions, evaluate, hold_out, train};
 use kinesic_host::pack::{Metric, PackFile, Provenance};
-use kinesic_host::prepare::fingerprint;
 use miette::{IntoDiagnostic, WrapErr, miette};
 use serde::Serialize;
 
 use super::report::{ReportArgs, face::page};
-use crate::commands::output::{check_output, command_line, print_json, spinner, write_whole};
+use crate::commands::origin::{command_line, fingerprint};
+use crate::commands::output::{check_output, print_json, spinner, write_whole};
 use crate::commands::precision::Precision;
 
 /// Learn how strongly faces show an expression, and how it moves their landmarks
@@ -91,12 +91,11 @@ pub fn run(args: &Args) -> miette::Result<()> {
         .into_diagnostic()
         .wrap_err_with(|| args.landmarks.display().to_string())?;
 
-    let input = fingerprint(&args.landmarks).into_diagnostic();
     let mut provenance = Provenance {
         tool: format!("kinesic {}", env!("CARGO_PKG_VERSION")),
         command: command_line(),
         seed: args.seed,
-        inputs: vec![input.wrap_err_with(|| args.landmarks.display().to_string())?],
+        inputs: vec![fingerprint(&args.landmarks)?],
         notes: trained.notes.clone(),
         ..Provenance::default()
     };

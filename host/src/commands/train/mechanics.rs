@@ -6,15 +6,16 @@ use std::time::Instant;
 
 use clap::ValueEnum;
 use kinesic_host::mechanics::{Figures, NamedClip, Split, TrainOptions, Trained, propose, train_kept};
-use kinesic_host::pack::{Baselines, InputFile, Metric, PackFile, Provenance};
-use kinesic_host::prepare::{Source, common_rate, fingerprint};
-use miette::{IntoDiagnostic, WrapErr, miette};
+use kinesic_host::pack::{Baselines, Metric, PackFile, Provenance};
+use kinesic_host::prepare::{Source, common_rate};
+use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
 
 use super::report::{ReportArgs, mechanics::page};
 use super::resume::ResumeArgs;
 use crate::commands::clips::{Reading, clip_paths};
-use crate::commands::output::{check_output, command_line, print_json, spinner, write_whole};
+use crate::commands::origin::{command_line, fingerprints, name_of};
+use crate::commands::output::{check_output, print_json, spinner, write_whole};
 use crate::commands::precision::Precision;
 
 /// Learn which pose a body's mechanics ask for, from clips without expression
@@ -119,7 +120,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let mut clips = Vec::new();
     for (source, mechanics) in sources.iter().zip(&mechanics) {
         let clip = source.on_rig(&rig, fps).into_diagnostic()?;
-        clips.push(NamedClip { name: source.name(), clip, mechanics: *mechanics });
+        clips.push(NamedClip { name: name_of(&source.name()), clip, mechanics: *mechanics });
     }
     let options = TrainOptions {
         code: usize::from(args.hidden),
@@ -142,10 +143,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
             eprintln!("{stage}: epoch {epoch} of {epochs}, error {error:.5}");
         }
     };
-    let prints: Vec<InputFile> = paths
-        .iter()
-        .map(|path| fingerprint(path).into_diagnostic().wrap_err_with(|| path.display().to_string()))
-        .collect::<Result<_, _>>()?;
+    let prints = fingerprints(paths.iter().map(|path| path.as_path()))?;
     // The same options, the same clips in the same order, read in the same way: the same training.
     let options_and_rate = format!("mechanics {options:?} {fps}");
     let clips_by_hash = format!("{prints:?} {mechanics:?}");

@@ -4,20 +4,21 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 use kinesic_host::clip::Clip;
-use kinesic_host::pack::{InputFile, Metric, PackFile, Provenance};
-use kinesic_host::prepare::{Source, common_rate, fingerprint};
+use kinesic_host::pack::{Metric, PackFile, Provenance};
+use kinesic_host::prepare::{Source, common_rate};
 use kinesic_host::reached::Reached;
 use kinesic_host::translate::{
     AFFINE, Alignment, Base, Candidate, FormChoice, NamedPair, Poles, Report, Stage, TrainOptions, TrainPair, Trained,
     evaluate, plausible, train_kept,
 };
-use miette::{IntoDiagnostic, WrapErr};
+use miette::IntoDiagnostic;
 use serde::Serialize;
 
 use super::report::{ReportArgs, translate::page};
 use super::resume::ResumeArgs;
 use crate::commands::clips::{Pairs, Reading};
-use crate::commands::output::{check_output, command_line, print_json, spinner, write_whole};
+use crate::commands::origin::{command_line, fingerprints, name_of};
+use crate::commands::output::{check_output, print_json, spinner, write_whole};
 use crate::commands::precision::Precision;
 
 /// Learn to translate one manner of moving into another, from pairs of clips
@@ -128,18 +129,14 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let all: Vec<_> = source_poses.iter().chain(&target_poses).map(Vec::as_slice).collect();
     let rig = rig.centred(&all);
     let pair = |((source, target), (neutral, styled)): (&(Source, Source), (&Vec<_>, &Vec<_>))| TrainPair {
-        source_name: source.name(),
-        target_name: target.name(),
+        source_name: name_of(&source.name()),
+        target_name: name_of(&target.name()),
         source: rig.locals(neutral),
         target: rig.locals(styled),
     };
     let pairs: Vec<TrainPair> = sources.iter().zip(source_poses.iter().zip(&target_poses)).map(pair).collect();
     let style = args.style.clone().unwrap_or_else(|| file_stem(&args.out));
-    let prints: Vec<InputFile> = paths
-        .iter()
-        .flat_map(|(a, b)| [a, b])
-        .map(|path| fingerprint(path).into_diagnostic().wrap_err_with(|| path.display().to_string()))
-        .collect::<Result<_, _>>()?;
+    let prints = fingerprints(paths.iter().flat_map(|(a, b)| [a.as_path(), b.as_path()]))?;
     // The same options, the same clips in the same order, read in the same way: the same training.
     let deciding = [format!("translate {:?} {fps}", args.options()), format!("{prints:?}"), args.reading.deciding()?];
     let mut checkpoint = args.resume.checkpoint(&args.out, &deciding)?;
