@@ -7,7 +7,7 @@ mod motion;
 use kinesic::{Pack, Pipeline, PipelineState, Pose, Translator, TranslatorState};
 use semihosting::{println, process};
 
-// `kinesic inspect weary.kin` prints the capacities.
+// Capacities: `kinesic inspect weary.kin` prints the least that they must be.
 const ROWS: usize = 20;
 const STATES: usize = 60;
 
