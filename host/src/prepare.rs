@@ -77,8 +77,7 @@ impl Source {
     /// Reads a clip; its joints must be known, by name or through the options' map.
     pub fn read(path: &Path, options: &ReadOptions) -> Result<Self, PrepareError> {
         let clip = clip::read_with(path, options)?;
-        let named = options.map.as_ref().and_then(|map| map.resolve(&clip.skeleton).ok());
-        let map = named.or_else(|| JointMap::detect(&clip.skeleton));
+        let map = JointMap::choose(&clip.skeleton, options.map.as_ref()).ok().flatten();
         let map = map.ok_or_else(|| PrepareError::UnknownSkeleton {
             path: path.to_owned(),
             joints: clip.skeleton.joints.iter().map(|j| j.name.as_str()).collect::<Vec<_>>().join(", "),

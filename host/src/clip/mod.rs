@@ -5,6 +5,7 @@
 //! | file | holds |
 //! |---|---|
 //! | [`read`], [`read_with`] | any accepted file to a [`Clip`], chosen by content |
+//! | [`formats`] | the table of readers |
 //! | [`bvh`] | the BVH parser and [`Clip::write_bvh`] |
 //! | [`write`](Clip::write) | a clip to a file of the format that its name says: BVH, glTF ([`gltf`]), table of angles ([`angles`]) |
 //! | [`kinect`] | Kinect CSV recordings: positions, resampled and fitted with a skeleton |
@@ -18,11 +19,14 @@ use nalgebra::{UnitQuaternion, Vector3};
 pub mod angles;
 pub mod bvh;
 mod error;
+pub mod formats;
 pub mod gltf;
 pub mod kinect;
 mod kinematics;
 pub mod map;
+mod measure;
 mod mirror;
+mod notes;
 mod read;
 mod resample;
 pub mod solve;
@@ -34,6 +38,7 @@ pub use bvh::write::{WriteError, WriteOptions};
 pub use error::ReadError;
 pub use map::{Canonical, JointMap, SkeletonMap};
 pub use mirror::MirrorError;
+pub use notes::NoteLog;
 pub use read::{ReadOptions, read, read_with};
 pub use resample::ResampleError;
 pub use summary::Summary;

@@ -71,7 +71,17 @@ enum Command {
 }
 
 /// Runs a command line.
+///
+/// What was assumed about the clips is said on standard error, unless JSON carries it, also where the command fails.
 pub fn run(cli: Cli) -> miette::Result<()> {
+    let done = dispatch(cli);
+    for note in clips::NOTES.take() {
+        eprintln!("note: {note}");
+    }
+    done
+}
+
+fn dispatch(cli: Cli) -> miette::Result<()> {
     match cli.command.unwrap_or_else(|| Command::Demo(demo::Args::default())) {
         Command::Demo(args) => demo::run(&args),
         Command::Inspect(args) => inspect::run(&args),
