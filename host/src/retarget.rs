@@ -48,7 +48,8 @@ pub fn retarget(clip: &Clip, map: &JointMap, rig: &Rig) -> Result<Clip, Retarget
     } else if same_rest(&clip.skeleton, &rig.skeleton) {
         clip.rotations.clone()
     } else {
-        notes.push("The rest pose differs from the pack's: directions of bones were transferred, not rotations.".into());
+        notes
+            .push("The rest pose differs from the pack's: directions of bones were transferred, not rotations.".into());
         corrected(clip, &rig.skeleton)
     };
     Ok(Clip { skeleton: rig.skeleton.clone(), frame_time: clip.frame_time, root, rotations, notes })
@@ -67,7 +68,10 @@ const NO_BONE: f64 = 1e-4;
 /// Whether the bones of two skeletons with the same joints point the same way at rest.
 fn same_rest(a: &Skeleton, b: &Skeleton) -> bool {
     let alike = |a: &Vector3<f64>, b: &Vector3<f64>| a.norm() < NO_BONE || b.norm() < NO_BONE || a.angle(b) < ALIKE;
-    a.joints.iter().zip(&b.joints).all(|(a, b)| alike(&a.offset, &b.offset) && a.end.zip(b.end).is_none_or(|(a, b)| alike(&a, &b)))
+    a.joints
+        .iter()
+        .zip(&b.joints)
+        .all(|(a, b)| alike(&a.offset, &b.offset) && a.end.zip(b.end).is_none_or(|(a, b)| alike(&a, &b)))
 }
 
 /// Rotations that lay the rig's bones where the clip's are: `G_rig = G_clip A`, where `A` turns the rig's bones at a joint into the clip's

@@ -20,9 +20,12 @@ pub struct Reader {
 
 /// All of them.
 pub static READERS: [Reader; 3] = [
-    Reader { name: "BVH", extensions: &["bvh"], sniff: is_bvh, parse: |bytes, path, options| {
-        bvh::parse(bytes, options).map_err(|error| error.at(path))
-    } },
+    Reader {
+        name: "BVH",
+        extensions: &["bvh"],
+        sniff: is_bvh,
+        parse: |bytes, path, options| bvh::parse(bytes, options).map_err(|error| error.at(path)),
+    },
     Reader { name: "table of joint positions (Kinect)", extensions: &["csv"], sniff: is_kinect, parse: kinect::read },
     Reader { name: "glTF", extensions: &["glb", "gltf"], sniff: is_gltf, parse: gltf::read },
 ];

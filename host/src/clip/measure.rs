@@ -1,6 +1,5 @@
 //! Size and names of a skeleton that was just read: which unit, which layout, and what is odd about them.
 
-use super::error::ReadError;
 use super::map::JointMap;
 use super::units::{Unit, measure_leg};
 use super::{Clip, ReadOptions, Skeleton, bvh};
@@ -68,9 +67,4 @@ pub(super) fn note_size(clip: &mut Clip, map: Option<&JointMap>) {
             "Size: the person is about {height:.2} m tall, expected 0.4 to 2.5 m: the unit of length may be another (--units)."
         ));
     }
-}
-
-/// The error of a unit that cannot be told, with the file's name.
-pub(super) fn unknown_units(path: &std::path::Path, measured: String) -> ReadError {
-    ReadError::UnknownUnits { path: path.into(), measured }
 }

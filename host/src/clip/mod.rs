@@ -133,6 +133,33 @@ impl Clip {
         }
     }
 
+    /// The clip with some of its joints, and with those that carry them. A joint that loses its children keeps the first as its tip.
+    pub fn with_joints(&self, keep: &mut [bool]) -> Clip {
+        for joint in (1..self.skeleton.len()).rev() {
+            if let (true, Some(parent)) = (keep[joint], self.skeleton.joints[joint].parent) {
+                keep[parent] = true;
+            }
+        }
+        let mut index = vec![0; keep.len()];
+        let mut joints: Vec<Joint> = Vec::new();
+        for (at, joint) in self.skeleton.joints.iter().enumerate().filter(|(at, _)| keep[*at]) {
+            index[at] = joints.len();
+            let mut children = self.skeleton.children(at);
+            let leaf = self.skeleton.children(at).all(|c| !keep[c]);
+            let tip = children.next().filter(|_| leaf).map(|c| self.skeleton.joints[c].offset);
+            joints.push(Joint { parent: joint.parent.map(|p| index[p]), end: joint.end.or(tip), ..joint.clone() });
+        }
+        let mut columns = keep.iter().cycle();
+        let kept = |_: &&UnitQuaternion<f64>| columns.next() == Some(&true);
+        Clip {
+            skeleton: Skeleton { joints },
+            frame_time: self.frame_time,
+            root: self.root.clone(),
+            rotations: self.rotations.iter().filter(kept).copied().collect(),
+            notes: self.notes.clone(),
+        }
+    }
+
     /// Local rotations of one frame, one per joint; empty when there is no such frame.
     pub fn pose(&self, frame: usize) -> &[UnitQuaternion<f64>] {
         let n = self.skeleton.len();

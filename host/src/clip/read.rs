@@ -4,10 +4,10 @@ use std::io::Read;
 use std::path::Path;
 
 use super::error::ReadError;
-use super::map::SkeletonMap;
-use super::units::{Unit, UpAxis};
 use super::formats::reader_of;
+use super::map::SkeletonMap;
 use super::notes::{NoteLog, is_assumption};
+use super::units::{Unit, UpAxis};
 use super::{Clip, kinect};
 
 /// What the caller knows better than the file. The default lets the reader find out, and say so in the notes.

@@ -31,8 +31,9 @@ pub enum ResampleError {
 /// Most rotations of a clip: 3 GB, or four hours of 60 joints at 120 frames per second.
 const MAX_ROTATIONS: f64 = 1e8;
 
-/// Frame times are written with few digits (0.0333333): a ratio this near to a whole number is meant to be it.
-const RATIO_TOLERANCE: f64 = 1e-3;
+/// Frame times are written with few digits (0.0333333): a ratio this near to a whole number is meant to be it. The 29.97 frames of
+/// television are not 30, a thousandth off.
+const RATIO_TOLERANCE: f64 = 5e-4;
 
 impl Clip {
     /// The clip at another frame rate, over the same time.

@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use image::DynamicImage;
+use image::metadata::Orientation;
+use image::{DynamicImage, ImageDecoder, ImageReader, ImageResult};
 use kinesic::face::{Landmarks, POINTS};
 use kinesic_host::face::{Face, landmarks};
 use miette::{IntoDiagnostic, WrapErr, miette};
@@ -20,7 +21,7 @@ pub fn photographed(pictures: &[PathBuf], table: &Path) -> miette::Result<Vec<Ph
     let faces = landmarks::read(table, None).into_diagnostic()?;
     let one = |path: &PathBuf| {
         let face = find(&faces, path, table)?;
-        let picture = image::open(path).into_diagnostic().wrap_err_with(|| path.display().to_string())?;
+        let picture = upright(path).into_diagnostic().wrap_err_with(|| path.display().to_string())?;
         inside(&face.landmarks, &picture, path)?;
         Ok(Photographed { name: face.picture.clone(), picture, landmarks: face.landmarks })
     };
@@ -58,4 +59,16 @@ fn inside(landmarks: &Landmarks, picture: &DynamicImage, path: &Path) -> miette:
         "{}: only {count} of the {POINTS} landmarks are inside the picture of {width} x {height} pixels",
         path.display()
     ))
+}
+
+/// The picture as its EXIF orientation says that it is seen; phones store it lying.
+fn upright(path: &Path) -> ImageResult<DynamicImage> {
+    let mut decoder = ImageReader::open(path)?.with_guessed_format()?.into_decoder()?;
+    let orientation = decoder.orientation()?;
+    let mut picture = DynamicImage::from_decoder(decoder)?;
+    if orientation != Orientation::NoTransforms {
+        picture.apply_orientation(orientation);
+        eprintln!("note: {}: turned upright, as its EXIF orientation says", path.display());
+    }
+    Ok(picture)
 }

@@ -27,8 +27,9 @@ impl Draft {
             Some((map, pelvis)) => {
                 let Some(depth) = self.lone(pelvis, map) else {
                     let (root, pelvis) = (&self.joints[0].name, &self.joints[pelvis].name);
-                    self.notes
-                        .push(format!("The pelvis '{pelvis}' is not the root: '{root}' carries other joints of the body too."));
+                    self.notes.push(format!(
+                        "The pelvis '{pelvis}' is not the root: '{root}' carries other joints of the body too."
+                    ));
                     return;
                 };
                 depth
@@ -67,7 +68,8 @@ impl Draft {
         if keep.iter().all(|&k| k) {
             return;
         }
-        let left: Vec<&str> = self.joints.iter().zip(keep).filter(|(_, k)| !**k).map(|(j, _)| j.name.as_str()).collect();
+        let left: Vec<&str> =
+            self.joints.iter().zip(keep).filter(|(_, k)| !**k).map(|(j, _)| j.name.as_str()).collect();
         let shown = left.iter().take(5).copied().collect::<Vec<_>>().join("', '");
         let more = if left.len() > 5 { ", ..." } else { "" };
         self.notes.push(format!("{} joint(s) beside the pelvis are left out: '{shown}'{more}.", left.len()));

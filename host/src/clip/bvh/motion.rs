@@ -16,11 +16,7 @@ pub(super) struct Motion {
 }
 
 /// Reads from after the keyword MOTION to the end.
-pub(super) fn parse(
-    mut cursor: Cursor<'_>,
-    joints: &[RawJoint],
-    notes: &mut Vec<String>,
-) -> Result<Motion, BvhFault> {
+pub(super) fn parse(mut cursor: Cursor<'_>, joints: &[RawJoint], notes: &mut Vec<String>) -> Result<Motion, BvhFault> {
     let channels: usize = joints.iter().map(|j| j.channels.len()).sum();
     if channels == 0 {
         return Err(BvhFault::NoChannels);

@@ -64,7 +64,9 @@ fn decide(clip: &mut Clip, map: Option<&JointMap>, rest: Vector3<f64>, motion: V
                 clip.notes.push(unsure(up, percent(motion, up)));
             }
         }
-        (_, Some(up)) if up != UpAxis::Y && percent(motion, up) > 80.0 => clip.notes.push(unsure(up, percent(motion, up))),
+        (_, Some(up)) if up != UpAxis::Y && percent(motion, up) > 80.0 => {
+            clip.notes.push(unsure(up, percent(motion, up)))
+        }
         _ => {}
     }
 }
@@ -147,18 +149,16 @@ fn note_hand(clip: &mut Clip, map: Option<&JointMap>) {
     let Some(map) = map else { return };
     let joint = |c| map.joint(c);
     let (Some(left), Some(right)) = (joint(Canonical::LHip), joint(Canonical::RHip)) else { return };
-    let feet: Vec<(usize, usize, Option<Vector3<f64>>)> = [
-        (Canonical::LAnkle, Canonical::LToe),
-        (Canonical::RAnkle, Canonical::RToe),
-    ]
-    .into_iter()
-    .filter_map(|(ankle, toe)| {
-        let (ankle, toe) = (joint(ankle)?, joint(toe));
-        // Without toes the foot's own tip says it.
-        let tip = clip.skeleton.joints[ankle].end;
-        (toe.is_some() || tip.is_some()).then_some((ankle, toe.unwrap_or(ankle), tip.filter(|_| toe.is_none())))
-    })
-    .collect();
+    let feet: Vec<(usize, usize, Option<Vector3<f64>>)> =
+        [(Canonical::LAnkle, Canonical::LToe), (Canonical::RAnkle, Canonical::RToe)]
+            .into_iter()
+            .filter_map(|(ankle, toe)| {
+                let (ankle, toe) = (joint(ankle)?, joint(toe));
+                // Without toes the foot's own tip says it.
+                let tip = clip.skeleton.joints[ankle].end;
+                (toe.is_some() || tip.is_some()).then_some((ankle, toe.unwrap_or(ankle), tip.filter(|_| toe.is_none())))
+            })
+            .collect();
     if feet.is_empty() {
         return;
     }

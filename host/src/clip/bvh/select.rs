@@ -26,7 +26,9 @@ pub(super) fn used(
     if roots.len() > 1 {
         notes.push(match root {
             Some(name) => format!("Of {} figures, '{name}' is read, as given.", roots.len()),
-            None => format!("The file has {} figures ({}): the first is read; --root names another.", roots.len(), names()),
+            None => {
+                format!("The file has {} figures ({}): the first is read; --root names another.", roots.len(), names())
+            }
         });
     }
     let scaled = joints.iter().filter(|j| j.channels.iter().any(|c| matches!(c, Channel::Unused(0..3)))).count();

@@ -19,11 +19,8 @@ pub(super) fn mend(clip: &mut Clip, repair: bool) {
     let turns = glitches(clip);
     if !roots.is_empty() {
         let far = roots.iter().map(|&f| clip.root[f].norm()).fold(0.0, f64::max);
-        let done = if repair {
-            "bridged by straight lines, as given"
-        } else {
-            "left as they are; --repair bridges them"
-        };
+        let done =
+            if repair { "bridged by straight lines, as given" } else { "left as they are; --repair bridges them" };
         let text = format!(
             "{} the root leaps faster than {FASTEST} m/s and back (up to {far:.1} m from the origin): lost frames? They are {done}.",
             frames(&roots)

@@ -90,7 +90,11 @@ fn commas(text: &str, notes: &mut Vec<String>) -> Option<String> {
     notes.push(note.into());
     let mut out = String::with_capacity(text.len());
     for line in text.lines() {
-        if numbers(line) { out.push_str(&line.replace(',', to)) } else { out.push_str(line) }
+        if numbers(line) {
+            out.push_str(&line.replace(',', to))
+        } else {
+            out.push_str(line)
+        }
         out.push('\n');
     }
     Some(out)

@@ -57,7 +57,9 @@ pub fn parse(bytes: &[u8], folder: Option<&Path>) -> Result<Clip, String> {
     }
     let fps = rate(&times, &mut notes);
     if end * fps > MOST {
-        return Err(format!("the animation lasts {end:.0} s at {fps:.0} frames per second, at most {MOST} frames are read"));
+        return Err(format!(
+            "the animation lasts {end:.0} s at {fps:.0} frames per second, at most {MOST} frames are read"
+        ));
     }
     let count = 1 + (end * fps + 1e-3).floor() as usize;
     let rest = nodes.worlds(None);
@@ -80,7 +82,11 @@ pub fn parse(bytes: &[u8], folder: Option<&Path>) -> Result<Clip, String> {
     let finite = clip.root.iter().all(|p| p.iter().all(|x| x.is_finite()))
         && clip.rotations.iter().all(|r| r.coords.iter().all(|x| x.is_finite()))
         && clip.skeleton.joints.iter().all(|j| j.offset.iter().all(|x| x.is_finite()));
-    if finite { Ok(clip) } else { Err("the motion holds numbers that are not finite. Repair or export it again".into()) }
+    if finite {
+        Ok(clip)
+    } else {
+        Err("the motion holds numbers that are not finite. Repair or export it again".into())
+    }
 }
 
 fn buffer(buffer: &gltf::Buffer, blob: &mut Option<Vec<u8>>, folder: Option<&Path>) -> Result<Vec<u8>, String> {
@@ -157,7 +163,10 @@ fn tracks(animation: &gltf::Animation, buffers: &[Vec<u8>]) -> Result<Tracks, St
         };
         let kind = channel.sampler().interpolation();
         let each = if matches!(kind, Interpolation::CubicSpline) { 3 } else { 1 };
-        if times.is_empty() || values.len() != each * times.len() || times.windows(2).any(|w| w[0].partial_cmp(&w[1]) != Some(std::cmp::Ordering::Less)) {
+        if times.is_empty()
+            || values.len() != each * times.len()
+            || times.windows(2).any(|w| w[0].partial_cmp(&w[1]) != Some(std::cmp::Ordering::Less))
+        {
             return Err("the keys of a channel are not in order of time, or not one value each. Export it again".into());
         }
         let of = if rotation { &mut tracks.turns } else { &mut tracks.places };

@@ -40,8 +40,13 @@ pub(super) fn units(
     given: Option<Unit>,
     notes: &mut Vec<String>,
 ) -> Result<(), KinectFault> {
-    let mut legs: Vec<f64> =
-        frames.iter().map(|f| ((f[12] - f[13]).norm() + (f[13] - f[14]).norm()) / 2.0 + ((f[16] - f[17]).norm() + (f[17] - f[18]).norm()) / 2.0).collect();
+    let mut legs: Vec<f64> = frames
+        .iter()
+        .map(|f| {
+            ((f[12] - f[13]).norm() + (f[13] - f[14]).norm()) / 2.0
+                + ((f[16] - f[17]).norm() + (f[17] - f[18]).norm()) / 2.0
+        })
+        .collect();
     legs.sort_by(f64::total_cmp);
     let leg = legs.get(legs.len() / 2).copied().unwrap_or(0.0);
     let unit = match given {
@@ -76,10 +81,15 @@ pub(super) fn axes(frames: &mut [Skeleton20], options: &KinectOptions, notes: &m
     } else {
         let upward = |f: &Skeleton20| (f[3] - (f[14] + f[18]) / 2.0).try_normalize(1e-9).unwrap_or_default();
         let mean = frames.iter().map(upward).sum::<Vector3<f64>>() / frames.len().max(1) as f64;
-        if let Some(up) = UpAxis::ALL.into_iter().find(|up| mean.dot(&up.direction()) > 0.8).filter(|up| *up != UpAxis::Y) {
+        if let Some(up) =
+            UpAxis::ALL.into_iter().find(|up| mean.dot(&up.direction()) > 0.8).filter(|up| *up != UpAxis::Y)
+        {
             turn_found(frames, up, 100.0 * mean.dot(&up.direction()), notes);
         } else if mean.y < 0.6 {
-            notes.push("Y up assumed, though the body does not stand along it: somebody lies or bends, or --up is needed.".into());
+            notes.push(
+                "Y up assumed, though the body does not stand along it: somebody lies or bends, or --up is needed."
+                    .into(),
+            );
         }
     }
     if options.left_handed {

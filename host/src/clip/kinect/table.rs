@@ -86,7 +86,9 @@ pub(super) fn read(bytes: &[u8]) -> Result<Table, KinectFault> {
     }
     if others > 0 {
         let body = body.unwrap_or_default();
-        table.notes.push(format!("Several people: '{body}' has the most rows and is read, {others} row(s) of others are left out."));
+        table.notes.push(format!(
+            "Several people: '{body}' has the most rows and is read, {others} row(s) of others are left out."
+        ));
     }
     let seconds = clock(&table.times, &time_column.1, &mut table.notes);
     table.times.iter_mut().for_each(|t| *t *= seconds);

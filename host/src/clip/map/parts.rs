@@ -11,8 +11,28 @@ use crate::clip::Skeleton;
 
 /// Parts that name no bone.
 const NOISE: [&str; 22] = [
-    "mixamorig", "bip", "cc", "base", "j", "c", "def", "org", "mch", "jnt", "joint", "bone", "bind", "skin", "character", "rig", "b",
-    "valve", "valvebiped", "skel", "sk", "m",
+    "mixamorig",
+    "bip",
+    "cc",
+    "base",
+    "j",
+    "c",
+    "def",
+    "org",
+    "mch",
+    "jnt",
+    "joint",
+    "bone",
+    "bind",
+    "skin",
+    "character",
+    "rig",
+    "b",
+    "valve",
+    "valvebiped",
+    "skel",
+    "sk",
+    "m",
 ];
 
 /// Words for one bone, best first, of a limb's joints outwards in: a word that two joints could mean goes to the one that lacks a
@@ -107,7 +127,8 @@ pub(super) fn fit(skeleton: &Skeleton) -> Option<JointMap> {
     let pelvis = named.filter(|&p| above(hips).any(|j| j == p)).unwrap_or(hips);
     let head = *index.get(&(0, "head".to_owned()))?;
     let chest = common(common(at(LShoulder)?, at(RShoulder)?)?, head)?;
-    let spine = above(chest).take_while(|&j| j != pelvis).last().filter(|&s| s != chest && above(chest).any(|j| j == pelvis));
+    let spine =
+        above(chest).take_while(|&j| j != pelvis).last().filter(|&s| s != chest && above(chest).any(|j| j == pelvis));
     let neck = index.get(&(0, "neck".to_owned())).copied().filter(|&n| above(head).any(|j| j == n));
     let middle = [(Pelvis, Some(pelvis)), (Spine, spine), (Chest, Some(chest)), (Neck, neck), (Head, Some(head))];
     for (canonical, joint) in middle {
