@@ -24,9 +24,6 @@ pub struct Reading {
     /// Which hand the files' axes are of
     #[arg(long, value_enum, default_value_t = Hand::Right)]
     pub handed: Hand,
-    /// Turn a left-handed file round, as --handed left
-    #[arg(long)]
-    pub mirror: bool,
     /// Which figure of a file with several: the name of its ROOT (default: the first)
     #[arg(long, value_name = "NAME")]
     pub root: Option<String>,
@@ -58,7 +55,7 @@ impl Reading {
         Ok(ReadOptions {
             units: self.units,
             up: self.up,
-            left_handed: self.mirror || self.handed == Hand::Left,
+            left_handed: self.handed == Hand::Left,
             root: self.root.clone(),
             repair: self.repair,
             strict: self.strict,
@@ -73,7 +70,7 @@ impl Reading {
     /// Everything here that decides what a clip becomes.
     pub fn deciding(&self) -> miette::Result<String> {
         let map = self.map.as_ref().map(|path| fingerprint(path)).transpose().into_diagnostic()?;
-        let hand = self.mirror || self.handed == Hand::Left;
+        let hand = self.handed == Hand::Left;
         Ok(format!("{map:?} {:?} {:?} {hand} {:?} {}", self.units, self.up, self.root, self.repair))
     }
 }

@@ -170,7 +170,7 @@ pub fn parse(bytes: &[u8], options: &KinectOptions) -> Result<Recording, KinectF
 /// Positions at even steps, by straight lines between the rows.
 fn even_clock(table: &table::Table, fps: f64) -> Vec<Skeleton20> {
     let duration = table.times.last().copied().unwrap_or(0.0);
-    let count = 1 + (duration * fps + 1e-6).floor() as usize;
+    let count = 1 + (duration * fps + 1e-3).floor() as usize;
     let mut after = 1;
     let frames = (0..count).filter_map(|frame| {
         let time = frame as f64 / fps;
