@@ -137,7 +137,9 @@ fn no_prefix_of_a_file_panics_or_passes() {
     // The last digit, and the line's end, may go: what is left is a whole file.
     for length in 0..SOUND.len() - 2 {
         let result = clip::bvh::parse(&SOUND.as_bytes()[..length], &options);
-        assert!(result.is_err(), "the first {length} bytes were read");
+        // Without the last line whole frames are left, one fewer than declared: read, and said.
+        let said = |clip: &clip::Clip| clip.notes.iter().any(|n| n.contains("declares 2 frames, the file has 1"));
+        assert!(result.as_ref().map_or(true, said), "the first {length} bytes were read");
     }
 }
 
