@@ -195,7 +195,8 @@ fn names_of_many_producers_are_known() {
             .replace("ForeArm", "LowerArm")
             .replace("tArm", "tUpperArm")
     };
-    let styles: [(&str, &dyn Fn(&str) -> String); 7] = [
+    type Rename<'a> = &'a dyn Fn(&str) -> String;
+    let styles: [(&str, Rename); 7] = [
         ("biovision", &biovision),
         ("unity", &unity),
         ("underscore", &|n| format!("mixamorig_{n}")),
