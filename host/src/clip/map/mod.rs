@@ -19,6 +19,9 @@ pub(crate) use suggest::nearest;
 
 use super::Skeleton;
 
+/// A map of fewer names than a body has limbs is not taken for the map of another clip.
+const LIMBS: usize = 5;
+
 /// Number of canonical joints.
 pub const CANONICAL: usize = 21;
 
@@ -137,7 +140,8 @@ impl JointMap {
         given.resolve(skeleton).map(Some).or_else(|error| {
             let names = || given.joints.iter().flatten();
             let found = names().filter(|name| skeleton.find(name).is_some()).count();
-            let other = (2 * found < names().count()).then(|| Self::detect(skeleton)).flatten();
+            let other =
+                (names().count() >= LIMBS && 2 * found < names().count()).then(|| Self::detect(skeleton)).flatten();
             other.map(Some).ok_or(error)
         })
     }

@@ -159,8 +159,9 @@ fn robot_joints(robot: &Robot, rig: &Rig, entries: &[Option<&Entry>]) -> Result<
             };
             let found = &robot.joints[at];
             if let Motion::Fixed | Motion::Other(_) = found.motion {
-                let motion = if let Motion::Other(motion) = found.motion { motion } else { "fixed" };
-                let what = format!("'{name}' (line {}) is {motion}, expected revolute or continuous", found.line);
+                let kind = &found.kind;
+                let what =
+                    format!("'{name}' (line {}) is of the type '{kind}', expected revolute or continuous", found.line);
                 return refuse(what, "leave it out of the map: only hinges have angles".to_owned());
             }
             if let Some(mimic) = &found.mimic {

@@ -43,6 +43,8 @@ pub struct UrdfJoint {
     pub line: u32,
     /// How it moves.
     pub motion: Motion,
+    /// Its type as the file spells it.
+    pub kind: String,
     /// The joint that moves the link on which this one sits; none on the root link.
     pub parent: Option<usize>,
     /// Its frame in that joint's.
@@ -192,7 +194,7 @@ fn read(node: Node, line: u32) -> Result<UrdfJoint, RobotError> {
         Some("planar") => Motion::Other("planar"),
         Some("floating") => Motion::Other("floating"),
         // Refused where a map names it.
-        Some(_) => Motion::Other("of a type that is not known"),
+        Some(_) => Motion::Other("of an unknown type"),
         None => {
             let help = "expected revolute, continuous, fixed, prismatic, planar or floating";
             return Err(RobotError::new(place, "found no type", help));
@@ -249,6 +251,7 @@ fn read(node: Node, line: u32) -> Result<UrdfJoint, RobotError> {
         name: name.to_owned(),
         line,
         motion,
+        kind: node.attribute("type").unwrap_or_default().to_owned(),
         parent: None,
         origin: Isometry3::from_parts(
             Translation3::from(place_of),
