@@ -287,7 +287,7 @@ fn every_refusal_names_place_cause_and_next_step() {
         ("<axis xyz=\"0 0 1\"/>", "<axis xyz=\"0 0 0\"/>", &["waist", "length zero"]),
         ("<axis xyz=\"0 0 1\"/>", "<axis xyz=\"0 1\"/>", &["waist", "three numbers"]),
         ("name=\"waist\" type=\"revolute\"", "name=\"waist\" type=\"prismatic\"", &["spine", "'waist'", "prismatic"]),
-        ("name=\"waist\" type=\"revolute\"", "name=\"waist\" type=\"fixed\"", &["spine", "'waist'", "is fixed"]),
+        ("name=\"waist\" type=\"revolute\"", "name=\"waist\" type=\"fixed\"", &["spine", "'waist'", "type 'fixed'"]),
     ];
     for (from, to, words) in urdfs {
         let error = made(&swap(URDF, from, to), MAP).unwrap_err();

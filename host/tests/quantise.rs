@@ -21,7 +21,7 @@ fn unseen(file: &PackFile, manner: &Manner) -> Vec<Pose<MAX_JOINTS>> {
     let clip = walk(manner, 6.0, 60.0, 0.0, 5);
     let map = JointMap::detect(&clip.skeleton).unwrap();
     let fps = f64::from(pack.metadata().frame_rate);
-    rig.poses(&Source { path: PathBuf::from("made"), clip, map }.on_rig(&rig, fps).unwrap())
+    rig.poses(&Source { path: PathBuf::from("made"), clip, map, log: None }.on_rig(&rig, fps).unwrap())
 }
 
 #[test]

@@ -110,7 +110,8 @@ impl<const ROWS: usize> Limiter<'_, ROWS> {
         let left = flat(state.root_error);
         let Some(row) = frame.rows.first_mut() else { return false };
         let [x, _, z] = row;
-        let way = if told { frame.heading.to_world(Vector3::new(*x, 0.0, *z)) + flat(frame.leap) } else { Vector3::zeros() };
+        let way =
+            if told { frame.heading.to_world(Vector3::new(*x, 0.0, *z)) + flat(frame.leap) } else { Vector3::zeros() };
         let error = left + way;
         let step = free::advance(error, flat(state.root_step), left, self.root.speed, self.root.change);
         let left = error - step;

@@ -50,8 +50,9 @@ impl Memory {
     }
 }
 
-/// Frame times are written with few digits (0.0333333): a ratio this near to a whole number is meant to be it.
-const RATIO_TOLERANCE: f64 = 1e-3;
+/// Frame times are written with few digits (0.0333333): a ratio this near to a whole number is meant to be it. The 29.97 frames of
+/// television are not 30, a thousandth off.
+const RATIO_TOLERANCE: f64 = 5e-4;
 
 impl Clip {
     /// The clip at another frame rate, over the same time.

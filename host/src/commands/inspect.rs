@@ -74,12 +74,10 @@ struct ClipReport {
 }
 
 fn clip(args: &Args) -> miette::Result<()> {
-    let options = args.reading.options()?;
+    // The notes are printed below.
+    let options = clip::ReadOptions { log: None, ..args.reading.options()? };
     let clip = clip::read_with(&args.file, &options).into_diagnostic()?;
-    let map = match &options.map {
-        Some(map) => Some(map.resolve(&clip.skeleton).into_diagnostic()?),
-        None => JointMap::detect(&clip.skeleton),
-    };
+    let map = JointMap::choose(&clip.skeleton, options.map.as_ref()).into_diagnostic()?;
     let name = |joint: usize| clip.skeleton.joints[joint].name.clone();
     let known = |map: &JointMap| {
         let joint = |c: clip::Canonical| Some((c.name(), name(map.joint(c)?)));

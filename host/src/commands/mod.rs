@@ -79,6 +79,8 @@ enum Command {
 }
 
 /// Runs the command line of the process.
+///
+/// What was assumed about the clips is said on standard error, unless JSON carries it, also where the command fails.
 pub fn run() -> miette::Result<()> {
     let matches = Cli::command().get_matches();
     let cli = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
@@ -86,6 +88,14 @@ pub fn run() -> miette::Result<()> {
         guard::check(&matches)?;
     }
     origin::keep_private(cli.private);
+    let done = dispatch(cli);
+    for note in clips::NOTES.take() {
+        eprintln!("note: {note}");
+    }
+    done
+}
+
+fn dispatch(cli: Cli) -> miette::Result<()> {
     match cli.command.unwrap_or_else(|| Command::Demo(demo::Args::default())) {
         Command::Demo(args) => demo::run(&args),
         Command::Inspect(args) => inspect::run(&args),

@@ -10,6 +10,7 @@ use kinesic_host::{files, plain};
 use miette::{IntoDiagnostic, WrapErr, miette};
 use serde::Serialize;
 
+use super::clips::NOTES;
 use super::say;
 
 /// Writes a file whole or not at all.
@@ -60,9 +61,16 @@ fn check_folder(path: &Path) -> miette::Result<()> {
     Ok(())
 }
 
-/// Prints one JSON object.
+/// Prints one JSON object, with what was assumed about the clips in `reading`.
 pub fn print_json(value: &impl Serialize) -> miette::Result<()> {
-    let text = serde_json::to_string_pretty(value).into_diagnostic().wrap_err("cannot write JSON")?;
+    let mut value = serde_json::to_value(value).into_diagnostic().wrap_err("cannot write JSON")?;
+    let notes = NOTES.take();
+    if let Some(object) = value.as_object_mut()
+        && !notes.is_empty()
+    {
+        object.insert("reading".into(), notes.into());
+    }
+    let text = serde_json::to_string_pretty(&value).into_diagnostic().wrap_err("cannot write JSON")?;
     say::raw(&format!("{}\n", plain::json(&text)));
     Ok(())
 }

@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use image::{DynamicImage, ImageError};
+use image::metadata::Orientation;
+use image::{DynamicImage, ImageDecoder, ImageError, ImageReader, ImageResult};
 
 use crate::files;
 
@@ -36,14 +37,23 @@ pub enum PhotoError {
     },
 }
 
-/// Reads a picture, by its content whatever its name.
-pub fn open(path: &Path) -> Result<DynamicImage, PhotoError> {
+/// Reads a picture, by its content whatever its name, and says whether it was turned as its EXIF orientation asks.
+pub fn open(path: &Path) -> Result<(DynamicImage, bool), PhotoError> {
     let path = || path.to_owned();
     let bytes = files::read(&path()).map_err(|error| PhotoError::Io { path: path(), error })?;
     if bytes.starts_with(&[0xff, START]) && !has_end(&bytes) {
         return Err(PhotoError::Cut { path: path(), found: bytes.len() });
     }
-    image::load_from_memory(&bytes).map_err(|error| PhotoError::Image { path: path(), error })
+    upright(&bytes).map_err(|error| PhotoError::Image { path: path(), error })
+}
+
+/// The picture as a viewer shows it: a phone writes it as its sensor lies, and EXIF says how to turn it.
+fn upright(bytes: &[u8]) -> ImageResult<(DynamicImage, bool)> {
+    let mut decoder = ImageReader::new(std::io::Cursor::new(bytes)).with_guessed_format()?.into_decoder()?;
+    let orientation = decoder.orientation()?;
+    let mut picture = DynamicImage::from_decoder(decoder)?;
+    picture.apply_orientation(orientation);
+    Ok((picture, orientation != Orientation::NoTransforms))
 }
 
 /// Marks of a JPEG: begin, end, begin of a scan; restarts are without a length, as begin and end.
@@ -90,7 +100,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("x.jpg");
         std::fs::write(&path, &bytes).unwrap();
-        assert_eq!(open(&path).unwrap().width(), 40);
+        assert_eq!(open(&path).unwrap().0.width(), 40);
         std::fs::write(&path, [&bytes[..], &[0; 9]].concat()).unwrap();
         assert!(open(&path).is_ok(), "bytes after the end do no harm");
         for len in 2..bytes.len() {

@@ -11,7 +11,7 @@ use kinesic_host::translate::{
     AFFINE, Alignment, Base, Candidate, FormChoice, NamedPair, Poles, Report, Stage, TrainOptions, TrainPair, Trained,
     evaluate, plausible, train_kept,
 };
-use miette::IntoDiagnostic;
+use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
 
 use super::report::{ReportArgs, translate::page};
@@ -106,6 +106,20 @@ enum Mirror {
     Off,
 }
 
+/// Refuses a rate far above that of every clip: it holds nothing more, and the work grows faster than the rate.
+fn check_rate<'a>(fps: f64, clips: impl Iterator<Item = &'a Clip>) -> miette::Result<()> {
+    let fastest = clips.map(Clip::fps).fold(60.0, f64::max);
+    // Frame times are written with few digits.
+    if fps <= 1.01 * fastest {
+        return Ok(());
+    }
+    Err(miette!(
+        help = "leave --fps out to take the rate of the slowest clip",
+        "--fps {fps}: expected at most {fastest:.0}, the rate of the fastest clip (at least 60): frames in between hold nothing new, and fitting \
+         them takes hours"
+    ))
+}
+
 /// Runs the command.
 pub fn run(args: &Args) -> miette::Result<()> {
     check_output(&args.out, "kin")?;
@@ -119,6 +133,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let sources =
         paths.iter().map(|(a, b)| Ok((read(a)?, read(b)?))).collect::<miette::Result<Vec<(Source, Source)>>>()?;
     let fps = args.fps.unwrap_or_else(|| common_rate(sources.iter().flat_map(|(a, b)| [&a.clip, &b.clip])));
+    check_rate(fps, sources.iter().flat_map(|(a, b)| [&a.clip, &b.clip]))?;
     let rig = sources[0].0.rig().into_diagnostic()?;
     let on_rig = |source: &Source| source.on_rig(&rig, fps).into_diagnostic();
     let clips =

@@ -7,7 +7,7 @@ use kinesic::rig::JointKind;
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::stand::{rig_joint, world, zero};
-use super::{Entry, MapKind, Motion, Robot, RobotError, RobotMap, UrdfJoint};
+use super::{Entry, MapKind, Mimic, Motion, Robot, RobotError, RobotMap, UrdfJoint};
 use crate::clip::Canonical;
 use crate::clip::map::nearest;
 use crate::limit::{HeightLimit, JointLimit, LimitsModel};
@@ -15,6 +15,9 @@ use crate::rig::{JointCoordinates, Rig};
 
 /// Axes of a chain may be this far from a right angle (cosine; half a degree): a `rpy` of 1.57 is meant to be a quarter turn.
 const SQUARE: f64 = 1e-2;
+
+/// Bounds beyond this mean that there are none, rad: no robot counts 160 turns, and degrees stay below.
+const UNLIMITED: f64 = 1e3;
 
 /// Rates that stand in where the map has none of its own.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -51,6 +54,7 @@ pub fn import(
     let turned = zero(robot, &frames, map, rig, &joints);
     let to_world = world(map, rig);
     let mut notes = Vec::new();
+    note_leaders(robot, &mut notes);
     let acceleration = rates.acceleration.or(map.acceleration);
     let velocity = rates.velocity.or(map.velocity);
     let mut limits = Vec::new();
@@ -174,8 +178,9 @@ fn robot_joints(robot: &Robot, rig: &Rig, entries: &[Option<&Entry>]) -> Result<
             };
             let found = &robot.joints[at];
             if let Motion::Fixed | Motion::Other(_) = found.motion {
-                let motion = if let Motion::Other(motion) = found.motion { motion } else { "fixed" };
-                let what = format!("'{name}' (line {}) is {motion}, expected revolute or continuous", found.line);
+                let kind = &found.kind;
+                let what =
+                    format!("'{name}' (line {}) is of the type '{kind}', expected revolute or continuous", found.line);
                 return refuse(what, "leave it out of the map: only hinges have angles".to_owned());
             }
             if let Some(mimic) = &found.mimic {
@@ -225,6 +230,41 @@ fn no_acceleration(place: &str) -> RobotError {
     RobotError::new(place, "found no acceleration, expected rad/s^2", help)
 }
 
+/// The joints that follow one, also by way of others, each as `multiplier x + offset` of its angle `x`.
+fn followers<'r>(robot: &'r Robot, leader: &UrdfJoint) -> Vec<(&'r UrdfJoint, Mimic)> {
+    let mut found: Vec<(&UrdfJoint, Mimic)> = Vec::new();
+    let mut open = vec![Mimic { joint: leader.name.clone(), multiplier: 1.0, offset: 0.0 }];
+    while let Some(up) = open.pop() {
+        for follower in &robot.joints {
+            let Some(own) = follower.mimic.as_ref().filter(|own| own.joint == up.joint && own.multiplier != 0.0) else {
+                continue;
+            };
+            // A ring of followers ends where it began.
+            if follower.name == leader.name || found.iter().any(|(known, _)| known.name == follower.name) {
+                continue;
+            }
+            let multiplier = own.multiplier * up.multiplier;
+            let offset = own.multiplier * up.offset + own.offset;
+            found.push((follower, Mimic { joint: leader.name.clone(), multiplier, offset }));
+            open.push(Mimic { joint: follower.name.clone(), multiplier, offset });
+        }
+    }
+    found
+}
+
+/// Followers whose leader is not in the file.
+fn note_leaders(robot: &Robot, notes: &mut Vec<String>) {
+    for joint in &robot.joints {
+        let Some(mimic) = joint.mimic.as_ref().filter(|mimic| robot.find(&mimic.joint).is_none()) else { continue };
+        let near = nearest(&mimic.joint, robot.joints.iter().map(|j| j.name.as_str()));
+        let near = near.map_or(String::new(), |near| format!("; did you mean '{near}'?"));
+        notes.push(format!(
+            "{} (line {}): follows '{}', which is not in the file{near}: its limits are not kept for it",
+            joint.name, joint.line, mimic.joint
+        ));
+    }
+}
+
 /// What each robot joint of an entry may do, its followers' limits included.
 fn rows(
     robot: &Robot,
@@ -246,11 +286,8 @@ fn rows(
                 let help = format!("write velocity = 6.0 into the map's entry '{}', or give --velocity 6", entry.joint);
                 RobotError::new(&place, format!("found {found}, expected rad/s above 0"), help)
             })?;
-        for follower in robot.joints.iter() {
-            let Some(mimic) = follower.mimic.as_ref().filter(|mimic| mimic.joint == joint.name) else { continue };
-            if mimic.multiplier == 0.0 {
-                continue;
-            }
+        notes.extend(joint.notes.iter().cloned());
+        for (follower, mimic) in followers(robot, joint) {
             let ends = [follower.lower, follower.upper].map(|end| Some((end? - mimic.offset) / mimic.multiplier));
             let [low, high] = if mimic.multiplier < 0.0 { [ends[1], ends[0]] } else { ends };
             let tighter = (lower.max(low.unwrap_or(lower)), upper.min(high.unwrap_or(upper)));
@@ -295,6 +332,13 @@ fn bounds(
     }
     // What a <limit> leaves out is 0.
     let (low, high) = (low.unwrap_or(0.0), high.unwrap_or(0.0));
+    if low <= -UNLIMITED && high >= UNLIMITED {
+        notes.push(format!(
+            "{}: bounds of {low:e} and {high:e} are none, kept within half a turn to either side",
+            joint.name
+        ));
+        return Ok((-PI, PI));
+    }
     if low.abs().max(high.abs()) > 4.0 * PI {
         let what = format!("found bounds {low} and {high}, expected radians");
         return Err(RobotError::new(place, what, "these look like degrees: a half turn is 3.1416"));

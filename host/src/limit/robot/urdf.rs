@@ -43,6 +43,8 @@ pub struct UrdfJoint {
     pub line: u32,
     /// How it moves.
     pub motion: Motion,
+    /// Its type as the file spells it.
+    pub kind: String,
     /// The joint that moves the link on which this one sits; none on the root link.
     pub parent: Option<usize>,
     /// Its frame in that joint's.
@@ -57,6 +59,8 @@ pub struct UrdfJoint {
     pub velocity: Option<f64>,
     /// Whose angle it follows.
     pub mimic: Option<Mimic>,
+    /// What was made of odd values, one sentence each.
+    pub notes: Vec<String>,
 }
 
 /// A robot's tree of joints, in the file's order.
@@ -236,10 +240,11 @@ fn read(node: Node, line: u32) -> Result<UrdfJoint, RobotError> {
         Some("prismatic") => Motion::Other("prismatic"),
         Some("planar") => Motion::Other("planar"),
         Some("floating") => Motion::Other("floating"),
-        found => {
-            let what = format!("found the type '{}'", found.unwrap_or("(none)"));
+        // Refused where a map names it.
+        Some(_) => Motion::Other("of an unknown type"),
+        None => {
             let help = "expected revolute, continuous, fixed, prismatic, planar or floating";
-            return Err(RobotError::new(place, what, help));
+            return Err(RobotError::new(place, "found no type", help));
         }
     };
     let place_of = three("origin", "xyz")?.unwrap_or_default();
@@ -253,10 +258,34 @@ fn read(node: Node, line: u32) -> Result<UrdfJoint, RobotError> {
             return Err(RobotError::new(place, what, "as in <axis xyz=\"0 1 0\"/>"));
         }
     };
-    let both = |tag, soft, pick: fn(f64, f64) -> f64| -> Result<Option<f64>, RobotError> {
-        let (hard, soft) = (number("limit", tag)?, number("safety_controller", soft)?);
-        Ok(hard.zip(soft).map(|(hard, soft)| pick(hard, soft)).or(hard).or(soft))
+    let bound = |tag: &str, attribute: &str| -> Result<Option<f64>, RobotError> {
+        let text = child(node, tag).and_then(|node| node.attribute(attribute)).map(str::trim);
+        // Infinity stands for a joint without bounds.
+        match text.and_then(|text| text.parse::<f64>().ok()).filter(|value| value.is_infinite()) {
+            Some(value) => Ok(Some(value)),
+            None => number(tag, attribute),
+        }
     };
+    let mut notes = Vec::new();
+    let mut soft = [bound("safety_controller", "soft_lower_limit")?, bound("safety_controller", "soft_upper_limit")?];
+    let hard = [bound("limit", "lower")?, bound("limit", "upper")?];
+    if soft[0].is_some() && soft[0] == soft[1] && hard[0] != hard[1] {
+        notes.push(format!(
+            "{name}: soft limits of {} and {} would lock it, place holders: left out",
+            soft[0].unwrap_or(0.0),
+            soft[1].unwrap_or(0.0)
+        ));
+        soft = [None, None];
+    }
+    let both = |end: usize, pick: fn(f64, f64) -> f64| {
+        hard[end].zip(soft[end]).map(|(hard, soft)| pick(hard, soft)).or(hard[end]).or(soft[end])
+    };
+    let (lower, upper) = (both(0, f64::max), both(1, f64::min));
+    if motion == Motion::Revolute && lower == Some(0.0) && upper == Some(0.0) {
+        notes.push(format!(
+            "{name}: bounds of 0 and 0 lock it; if they are place holders, write lower and upper into the map's entry"
+        ));
+    }
     let mimic = match child(node, "mimic") {
         None => None,
         Some(mimic) => Some(Mimic {
@@ -269,16 +298,18 @@ fn read(node: Node, line: u32) -> Result<UrdfJoint, RobotError> {
         name: name.to_owned(),
         line,
         motion,
+        kind: node.attribute("type").unwrap_or_default().to_owned(),
         parent: None,
         origin: Isometry3::from_parts(
             Translation3::from(place_of),
             UnitQuaternion::from_euler_angles(turn.x, turn.y, turn.z),
         ),
         axis,
-        lower: both("lower", "soft_lower_limit", f64::max)?,
-        upper: both("upper", "soft_upper_limit", f64::min)?,
+        lower,
+        upper,
         velocity: number("limit", "velocity")?,
         mimic,
+        notes,
     })
 }
 

@@ -16,7 +16,8 @@ pub fn page(trained: &Trained, report: &Report, first: &NamedPair, rig: &Rig, fi
         "State-space models that turn one manner of moving into another (Dong 2018 after Hsu 2005).",
     );
     let ((_, source), (_, target)) = (first.source, first.target);
-    let poses = play(&file.pack().into_diagnostic()?, rig, &rig.poses(source), &Settings::default()).into_diagnostic()?;
+    let poses =
+        play(&file.pack().into_diagnostic()?, rig, &rig.poses(source), &Settings::default()).into_diagnostic()?;
     let styled = rig.clip(&poses, source.frame_time);
     page.heading("What it does").figure(
         &figures(&[("source", source), ("translated", &styled), ("target", target)]),
