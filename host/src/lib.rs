@@ -14,6 +14,7 @@ pub mod face;
 pub mod files;
 pub mod gait;
 pub mod limit;
+pub mod measure;
 pub mod mechanics;
 pub mod models;
 pub mod pack;

@@ -9,6 +9,9 @@ use super::matrix::FRAME_RATE;
 use super::measure::{bone_error, jerk};
 use super::objective::bones;
 use super::play::{HostComponents, Settings, play_stored};
+use crate::align::{AlignError, Ends};
+use crate::clip::Clip;
+use crate::measure::{Distance, Measurable, compare, compare_frames};
 use crate::pack::Metric;
 use crate::rig::Rig;
 
@@ -19,6 +22,9 @@ pub enum EvaluateError {
     /// The pack holds no components, or more than the host steps.
     #[error(transparent)]
     Load(#[from] LoadError),
+    /// Two motions cannot be compared.
+    #[error(transparent)]
+    Align(#[from] AlignError),
     /// There is nothing to play.
     #[error("the pack holds no stored stream of weights: train it again with this release")]
     NoStream,
@@ -55,6 +61,35 @@ pub struct Report {
     pub jerk_ratio: f64,
     /// Mean size of the third derivative of the joints' heading-local positions at strength 1, m/s^3.
     pub jerk: f64,
+    /// How far strength 1 takes the stored stream from strength 0, frame for frame.
+    pub change: Distance,
+}
+
+/// How far the stored stream is from a clip, at the best alignment in time.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ToClip {
+    /// At strength 1.
+    pub error: Distance,
+    /// At strength 0: doing nothing.
+    pub identity: Distance,
+}
+
+/// Plays the stored stream with and without the style and compares both with a clip on the rig at [`FRAME_RATE`].
+pub fn to_clip(pack: &Pack, rig: &Rig, clip: &Clip) -> Result<ToClip, EvaluateError> {
+    let (target, [styled, plain]) = (Measurable::new(rig, clip), streams(pack, rig)?);
+    let to_target = |motion| compare(rig, motion, &target, Ends::Closed);
+    Ok(ToClip { error: to_target(&styled)?, identity: to_target(&plain)? })
+}
+
+/// The stored stream at strength 1 and at strength 0.
+fn streams(pack: &Pack, rig: &Rig) -> Result<[Measurable; 2], EvaluateError> {
+    if HostComponents::load(pack)?.frames() == 0 {
+        return Err(EvaluateError::NoStream);
+    }
+    let mut settings = Settings::default();
+    let styled = Measurable::of_poses(rig, &play_stored(pack, &settings)?);
+    settings.controls.strength = 0.0;
+    Ok([styled, Measurable::of_poses(rig, &play_stored(pack, &settings)?)])
 }
 
 /// Names under which the training records what [`evaluate`] cannot measure.
@@ -63,9 +98,7 @@ pub const RECORDED: [&str; 2] = ["reconstruction_error", "style_distance"];
 /// Plays the stored stream and measures it.
 pub fn evaluate(pack: &Pack, rig: &Rig, recorded: &[Metric]) -> Result<Report, EvaluateError> {
     let components = HostComponents::load(pack)?;
-    if components.frames() == 0 {
-        return Err(EvaluateError::NoStream);
-    }
+    let [styled, plain] = streams(pack, rig)?;
     let [reconstruction_error, style_distance] = {
         let find = |name: &'static str| {
             recorded.iter().find(|m| m.name == name).map(|m| m.value).ok_or(EvaluateError::NoMetric { name })
@@ -96,12 +129,8 @@ pub fn evaluate(pack: &Pack, rig: &Rig, recorded: &[Metric]) -> Result<Report, E
     }
     let bones = bones(rig);
     let before = bone_error(&composed, channels, &bones);
-    let mut settings = Settings::default();
-    let styled = rig.locals(&play_stored(pack, &settings)?).positions;
-    settings.controls.strength = 0.0;
-    let plain = rig.locals(&play_stored(pack, &settings)?).positions;
-    let after = bone_error(&styled, channels, &bones);
-    let jerks = [&styled, &plain].map(|positions| jerk(positions, channels, FRAME_RATE));
+    let after = bone_error(&styled.positions, channels, &bones);
+    let jerks = [&styled, &plain].map(|motion| jerk(&motion.positions, channels, FRAME_RATE));
     Ok(Report {
         reconstruction_error,
         style_distance,
@@ -114,5 +143,6 @@ pub fn evaluate(pack: &Pack, rig: &Rig, recorded: &[Metric]) -> Result<Report, E
         composed_bone_error_mean_percent: before.mean_percent,
         jerk_ratio: jerks[0] / jerks[1].max(1e-300),
         jerk: jerks[0],
+        change: compare_frames(rig, &styled, &plain),
     })
 }

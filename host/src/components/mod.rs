@@ -30,7 +30,7 @@ mod sparse;
 mod train;
 
 pub use count::{Choice, choose, joint_error};
-pub use evaluate::{EvaluateError, RECORDED, Report, evaluate};
+pub use evaluate::{EvaluateError, RECORDED, Report, ToClip, evaluate, to_clip};
 pub use factor::{Descent, Factors, descend};
 pub use gather::gather;
 pub use learn::{Learned, Optimiser, learn, noise};

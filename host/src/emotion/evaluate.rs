@@ -10,6 +10,7 @@ use super::keyframes::Keyframes;
 use super::model::{EmotionModel, HostEmotion};
 use super::motions::Example;
 use super::pairs::{Pairs, pair_accuracy, spearman};
+use super::play::Strengths;
 use super::segment::{Cut, Segment, cut};
 use crate::clip::Clip;
 use crate::rig::{Rig, RigError};
@@ -52,6 +53,20 @@ impl<'a> Scorer<'a> {
     /// Names of the attributes.
     pub fn attributes(&self) -> Vec<String> {
         self.device.meta().attributes.iter().flatten().map(|attribute| attribute.name.to_owned()).collect()
+    }
+
+    /// The middle of every range of strengths.
+    pub fn middle(&self) -> Strengths {
+        let mut middle = Strengths::default();
+        for (to, attribute) in middle.iter_mut().zip(self.device.meta().attributes.iter().flatten()) {
+            *to = attribute.strength[0].midpoint(attribute.strength[1]);
+        }
+        middle
+    }
+
+    /// What of a clip is a motion of the pack.
+    pub fn cut(&self) -> Cut {
+        self.cut
     }
 
     /// Components `[keyframes x components]` of a motion; `None` if it is shorter than the keyframes.

@@ -14,11 +14,13 @@
 //! | [`mod@regress`], `hidden` | strength -> features: a few tanh units, the output layer eliminated |
 //! | [`train()`] | from labelled clips to a model |
 //! | [`evaluate`] | reads the strength of clips; pair accuracy, rank correlation |
+//! | [`compare_motions`] | played motions against recorded ones: centimetres and degrees |
 //! | [`EmotionModel`] | what training makes, as a pack and back |
 //! | [`play`] | playback through the device's code |
 //! | [`made`] | a made model for tests and firmware workloads |
 
 mod choose;
+mod compare;
 mod curvature;
 pub mod evaluate;
 pub mod features;
@@ -37,6 +39,7 @@ pub mod segment;
 mod train;
 
 pub use choose::{Choice, choose_cost};
+pub use compare::{CompareError, Distances, compare_motions};
 pub use curvature::Curvature;
 pub use model::{Attribute, EmotionModel, HostEmotion, MAX_KEYS, MAX_WIDTH};
 pub use pairs::{Pairs, pair_accuracy, spearman};

@@ -19,6 +19,16 @@ pub struct Provenance {
     pub notes: Vec<String>,
     /// What simpler models would do; `kinesic eval` reports them beside the pack's own error.
     pub baselines: Baselines,
+    /// Translation: the counterpart of the baselines in rotations, [`Turns::numbers`](crate::measure::turns::Turns::numbers).
+    pub turns: Vec<f32>,
+}
+
+impl Provenance {
+    /// From a pack's metadata; `None` if this release cannot read it.
+    pub fn decode(bytes: &[u8]) -> Option<Self> {
+        // Packs from before rotations were measured end without `turns`: they have none.
+        postcard::from_bytes(bytes).or_else(|_| postcard::from_bytes(&[bytes, &[0]].concat())).ok()
+    }
 }
 
 /// A training file.
@@ -48,4 +58,20 @@ pub struct Baselines {
     pub offset: Vec<f32>,
     /// Best affine map of each joint, `[joints x 12]`: row-major 3 x 3, then the translation.
     pub affine: Vec<f32>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn packs_without_turns_are_read() {
+        let offset = vec![1.0, 2.0];
+        let baselines = Baselines { offset, affine: vec![3.0] };
+        let wanted = Provenance { tool: "kinesic".to_owned(), seed: 7, baselines, ..Provenance::default() };
+        let bytes = postcard::to_allocvec(&wanted).unwrap();
+        assert_eq!(Provenance::decode(&bytes).as_ref(), Some(&wanted));
+        assert_eq!(Provenance::decode(&bytes[..bytes.len() - 1]).as_ref(), Some(&wanted));
+        assert_eq!(Provenance::decode(&bytes[..bytes.len() - 3]), None);
+    }
 }

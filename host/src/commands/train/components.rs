@@ -3,9 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use kinesic_host::components::{
-    FRAME_RATE, Optimiser, RECORDED, Report, Sparsity, TradeOff, TrainOptions, Trained, Weights, evaluate, trade_off,
-    train_kept,
+    FRAME_RATE, Optimiser, RECORDED, Report, Sparsity, ToClip, TradeOff, TrainOptions, Trained, Weights, evaluate,
+    to_clip, trade_off, train_kept,
 };
+use kinesic_host::measure::Distance;
 use kinesic_host::pack::{InputFile, Metric, PackFile, Provenance};
 use kinesic_host::prepare::{Source, fingerprint};
 use kinesic_host::reached::Reached;
@@ -143,11 +144,16 @@ pub fn run(args: &Args) -> miette::Result<()> {
     };
     let preview = PackFile::from_bytes(&trained.model.pack(&rig, &provenance));
     let report = evaluate(&preview.pack().into_diagnostic()?, &rig, &provenance.metrics).into_diagnostic()?;
+    let to_style = to_clip(&preview.pack().into_diagnostic()?, &rig, &style).into_diagnostic()?;
     provenance.metrics.extend(measured(&report));
     let bytes = trained.model.pack(&rig, &provenance);
     write_whole(&args.out, &bytes)?;
     let file = PackFile::from_bytes(&bytes);
-    args.report.write(&args.out, &file, page(&trained, &report, &curve, [&content, &style], &rig, &file)?)?;
+    args.report.write(
+        &args.out,
+        &file,
+        page(&trained, &report, &to_style, &curve, [&content, &style], &rig, &file)?,
+    )?;
     checkpoint.finish();
     bar.finish_and_clear();
     let summary = Summary {
@@ -161,6 +167,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
         strength: trained.model.strength,
         curve: &curve,
         training: &report,
+        to_style: &to_style,
     };
     if args.json {
         print_json(&summary)
@@ -212,6 +219,9 @@ fn measured(report: &Report) -> Vec<Metric> {
         metric("content_distance", report.content_distance),
         metric("bone_error_max_percent", report.bone_error_max_percent),
         metric("jerk_ratio", report.jerk_ratio),
+        metric("change_cm", report.change.cm),
+        metric("change_degrees", report.change.degrees.all),
+        metric("change_degrees_leaves", report.change.degrees.leaves),
     ]
 }
 
@@ -228,6 +238,7 @@ struct Summary<'a> {
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     curve: &'a [TradeOff],
     training: &'a Report,
+    to_style: &'a ToClip,
 }
 
 fn print(summary: &Summary) {
@@ -248,6 +259,12 @@ fn print(summary: &Summary) {
         report.composed_bone_error_max_percent, report.bone_error_max_percent
     );
     println!("jerk           {:8.2}  times the content's", report.jerk_ratio);
+    let row = |name: &str, Distance { cm, degrees }: &Distance| {
+        println!("{name:<14} {cm:8.2}  cm {:8.2} degrees {:8.2} degrees at the leaves", degrees.all, degrees.leaves);
+    };
+    row("change", &report.change);
+    row("content: style", &summary.to_style.identity);
+    row("result: style", &summary.to_style.error);
     if !summary.curve.is_empty() {
         println!("style weight   style distance   content distance   mean bone error, %");
         for point in summary.curve {

@@ -7,7 +7,7 @@ use kinesic_host::emotion::evaluate::{Report, Scorer, evaluate};
 use kinesic_host::emotion::labels::{self, Attribute};
 use kinesic_host::emotion::motions::{Example, hold_out, read};
 use kinesic_host::emotion::segment::Cut;
-use kinesic_host::emotion::{TrainOptions, Trained, train};
+use kinesic_host::emotion::{Distances, TrainOptions, Trained, compare_motions, train};
 use kinesic_host::pack::{Metric, PackFile, Provenance};
 use kinesic_host::prepare::{Source, fingerprint};
 use kinesic_host::rig::Rig;
@@ -146,11 +146,26 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let scorer = Scorer::load(&pack).into_diagnostic()?;
     let training = evaluate(&scorer, &kept);
     let unseen = (!held.is_empty()).then(|| evaluate(&scorer, &held));
+    let distances = |examples: &[Example]| compare_motions(&pack, &scorer, examples).into_diagnostic();
+    let distances = [distances(&kept)?, distances(&held)?];
     provenance.metrics = metrics(&trained, &training, unseen.as_ref());
+    for (name, found) in ["training", "takes_held_out"].into_iter().zip(&distances) {
+        let values = found.iter().flat_map(|d| [("error", &d.error), ("identity", &d.identity)]);
+        provenance.metrics.extend(values.flat_map(|(model, distance)| {
+            [
+                metric(&format!("{name}_{model}_cm"), distance.cm),
+                metric(&format!("{name}_{model}_degrees"), distance.degrees.all),
+            ]
+        }));
+    }
     let bytes = trained.model.pack(&rig, &provenance);
     write_whole(&args.out, &bytes)?;
     let file = PackFile::from_bytes(&bytes);
-    args.report.write(&args.out, &file, page(&trained, &training, unseen.as_ref(), &scorer, &kept, &pack)?)?;
+    args.report.write(
+        &args.out,
+        &file,
+        page(&trained, &training, unseen.as_ref(), &distances, &scorer, &kept, &pack)?,
+    )?;
     bar.finish_and_clear();
     let summary = Summary {
         pack: args.out.display().to_string(),
@@ -169,6 +184,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
         notes: &trained.notes,
         training: &training,
         held_out: unseen.as_ref(),
+        distances: &distances,
     };
     if args.json {
         return print_json(&summary);
@@ -223,8 +239,11 @@ fn file_stem(path: &Path) -> String {
     path.file_stem().map_or_else(|| "motion".to_owned(), |stem| stem.to_string_lossy().into_owned())
 }
 
+fn metric(name: &str, value: f64) -> Metric {
+    Metric { name: name.to_owned(), value }
+}
+
 fn metrics(trained: &Trained, training: &Report, unseen: Option<&Report>) -> Vec<Metric> {
-    let metric = |name: &str, value: f64| Metric { name: name.to_owned(), value };
     let mut metrics = vec![
         metric("keyframe_error_cm", 100.0 * trained.keyframe_error),
         metric("network_error_cm", 100.0 * trained.network_error),
@@ -250,6 +269,8 @@ struct Summary<'a> {
     notes: &'a [String],
     training: &'a Report,
     held_out: Option<&'a Report>,
+    /// To the recorded motions: of the training clips, of the clips held out.
+    distances: &'a [Option<Distances>; 2],
 }
 
 #[derive(Serialize)]
@@ -280,6 +301,14 @@ fn print(summary: &Summary) {
         "error of a joint, root mean square: {:.1} cm between keyframes, {:.1} cm from strengths to a motion",
         summary.keyframe_error_cm, summary.network_error_cm
     );
+    for (name, found) in ["trained on", "held out"].into_iter().zip(summary.distances) {
+        for (model, distance) in found.iter().flat_map(|d| [("labels", &d.error), ("middle", &d.identity)]) {
+            println!(
+                "{name:<10} played at the {model}: {:6.2} cm {:6.2} degrees {:6.2} degrees at the leaves from the clips",
+                distance.cm, distance.degrees.all, distance.degrees.leaves
+            );
+        }
+    }
     for Strengths { name, strength: [low, high] } in &summary.attributes {
         println!("{name}: strengths from {low:.2} to {high:.2}");
     }

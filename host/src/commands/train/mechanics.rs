@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::ValueEnum;
-use kinesic_host::mechanics::{Figures, NamedClip, Split, TrainOptions, Trained, propose, train_kept};
+use kinesic_host::mechanics::{
+    Distances, Figures, NamedClip, Split, TrainOptions, Trained, evaluate, propose, train_kept,
+};
 use kinesic_host::pack::{Baselines, InputFile, Metric, PackFile, Provenance};
 use kinesic_host::prepare::{Source, common_rate, fingerprint};
 use miette::{IntoDiagnostic, WrapErr, miette};
@@ -161,13 +163,25 @@ pub fn run(args: &Args) -> miette::Result<()> {
         metrics: metrics(&trained),
         notes: notes(args, &trained, &mechanics),
         baselines: Baselines { offset: trained.mean_pose.clone(), affine: trained.linear.weights.clone() },
+        turns: Vec::new(),
     };
     let bytes = args.precision.of(trained.model.pack(&rig, &provenance), &provenance)?;
     write_whole(&args.out, &bytes)?;
     let file = PackFile::from_bytes(&bytes);
+    // As `kinesic eval` measures it: on the body-mechanics clips that were held back whole, else on those of the training.
+    let unseen = clips.iter().zip(&trained.trained_on).any(|(clip, trained)| clip.mechanics && !trained);
+    let measured =
+        clips.iter().zip(&trained.trained_on).filter(|(clip, trained)| clip.mechanics && **trained != unseen);
+    let measured: Vec<_> = measured.map(|(clip, trained)| (clip.name.clone(), clip.clip.clone(), *trained)).collect();
+    let pack = file.pack().into_diagnostic()?;
+    let distances = evaluate(&pack, &rig, &provenance.baselines, &[], &measured).into_diagnostic()?.distances;
     // A plain clip that was not trained on shows more than one that was.
     let shown = (0..clips.len()).filter(|i| clips[*i].mechanics).min_by_key(|i| trained.trained_on[*i]).unwrap_or(0);
-    args.report.write(&args.out, &file, page(&trained, &history.take(), &clips[shown], &rig, &file)?)?;
+    args.report.write(
+        &args.out,
+        &file,
+        page(&trained, (&distances, unseen), &history.take(), &clips[shown], &rig, &file)?,
+    )?;
     checkpoint.finish();
     bar.finish_and_clear();
     let summary = Summary {
@@ -181,6 +195,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
         split: args.split.to_possible_value().map_or_else(String::new, |v| v.get_name().to_owned()),
         held_back: trained.held_back.clone(),
         training: trained.training.clone(),
+        distances,
         seconds: begun.elapsed().as_secs_f64(),
         peak_memory_mib: peak_memory(),
     };
@@ -227,6 +242,7 @@ struct Summary {
     split: String,
     held_back: Option<Figures>,
     training: Figures,
+    distances: Distances,
     seconds: f64,
     peak_memory_mib: Option<f64>,
 }
@@ -249,6 +265,11 @@ impl Summary {
         row("stacked, degrees a joint", |f| f.geodesic_deg);
         row("linear regression, degrees", |f| f.linear_deg);
         row("mean pose, degrees", |f| f.mean_pose_deg);
+        let Distances { predicted, linear, mean_pose } = &self.distances;
+        println!("all joints, whole clips: RMS joint distance, cm; mean angle, degrees: all joints, leaves");
+        for (name, d) in [("stacked", predicted), ("linear regression", linear), ("mean pose", mean_pose)] {
+            println!("{name:32} {:>12.2} {:>12.2} {:>12.2}", d.cm, d.degrees.all, d.degrees.leaves);
+        }
         let memory = self.peak_memory_mib.map_or_else(String::new, |m| format!(", peak memory {m:.0} MiB"));
         println!("{}: {} bytes, {:.0} s{memory}", self.pack, self.bytes, self.seconds);
     }

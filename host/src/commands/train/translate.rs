@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 use kinesic_host::clip::Clip;
+use kinesic_host::measure::turns::Turns;
 use kinesic_host::pack::{InputFile, Metric, PackFile, Provenance};
 use kinesic_host::prepare::{Source, common_rate, fingerprint};
 use kinesic_host::reached::Reached;
@@ -16,6 +17,7 @@ use serde::Serialize;
 
 use super::report::{ReportArgs, translate::page};
 use super::resume::ResumeArgs;
+use crate::commands::angles;
 use crate::commands::clips::{Pairs, Reading};
 use crate::commands::output::{check_output, command_line, print_json, spinner, write_whole};
 use crate::commands::precision::Precision;
@@ -161,6 +163,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
             target: (&pair.target_name, styled),
         })
         .collect();
+    let turns = Turns::of_pairs(&rig, clips.iter().map(|(a, b)| (a, b))).into_diagnostic()?;
     let mut provenance = Provenance {
         tool: format!("kinesic {}", env!("CARGO_PKG_VERSION")),
         command: command_line(),
@@ -169,6 +172,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
         metrics: Vec::new(),
         notes: notes(&trained),
         baselines: trained.baselines.clone(),
+        turns: turns.numbers(),
     };
     let poses = |clips: &mut dyn Iterator<Item = &Clip>| clips.map(|clip| rig.poses(clip)).collect::<Vec<_>>();
     let preview = PackFile::from_bytes(&args.precision.of(trained.model.pack(&rig, &provenance), &provenance)?);
@@ -176,7 +180,8 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let targets = poses(&mut clips.iter().map(|(_, styled)| styled));
     trained.model.strength =
         plausible(&preview.pack().into_diagnostic()?, &rig, &sources, &targets).into_diagnostic()?;
-    let report = evaluate(&preview.pack().into_diagnostic()?, &rig, &trained.baselines, &named).into_diagnostic()?;
+    let pack = preview.pack().into_diagnostic()?;
+    let report = evaluate(&pack, &rig, &trained.baselines, Some(&turns), &named).into_diagnostic()?;
     provenance.metrics = metrics(&trained, &report);
     let bytes = args.precision.of(trained.model.pack(&rig, &provenance), &provenance)?;
     write_whole(&args.out, &bytes)?;
@@ -279,6 +284,8 @@ fn metrics(trained: &Trained, report: &Report) -> Vec<Metric> {
         metric("training_identity_cm", report.errors.identity_cm),
         metric("training_offset_cm", report.errors.offset_cm),
         metric("training_affine_cm", report.errors.affine_cm),
+        metric("training_error_degrees", report.errors.degrees.error.all),
+        metric("training_identity_degrees", report.errors.degrees.identity.all),
     ]
 }
 
@@ -326,11 +333,13 @@ fn print(args: &Args, trained: &Trained, report: &Report, bytes: usize, fps: f64
         let mark = if *candidate == trained.candidate.0 { "*" } else { " " };
         println!("             {mark} {error:8.2}  {}", describe(candidate));
     }
-    println!("training pairs, aligned RMS joint distance, cm");
-    println!("               identity {:8.2}", report.errors.identity_cm);
-    println!("               offset   {:8.2}", report.errors.offset_cm);
-    println!("               affine   {:8.2}", report.errors.affine_cm);
-    println!("               pack     {:8.2}", report.errors.error_cm);
+    let errors = &report.errors;
+    println!("training pairs: aligned RMS joint distance, cm; mean angle, degrees: all joints, leaves");
+    let cm = [errors.identity_cm, errors.offset_cm, errors.affine_cm, errors.error_cm];
+    for (cm, (name, degrees)) in cm.into_iter().zip(angles::columns(errors)) {
+        let [all, leaves] = degrees.map_or([f64::NAN; 2], |degrees| [degrees.all, degrees.leaves]);
+        println!("               {name:<8} {cm:8.2} {all:8.2} {leaves:8.2}");
+    }
     for note in notes(trained).iter().skip(4) {
         println!("note: {note}");
     }
