@@ -13,6 +13,7 @@ pub mod emotion;
 pub mod face;
 pub mod files;
 pub mod gait;
+pub mod learn;
 pub mod limit;
 pub mod measure;
 pub mod mechanics;

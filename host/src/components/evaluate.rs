@@ -1,7 +1,6 @@
 //! What a pack of components does, measured through the device's code.
 
 use kinesic::Pack;
-use kinesic::kernel::ROWS;
 use kinesic::model::LoadError;
 use serde::Serialize;
 
@@ -13,6 +12,7 @@ use crate::align::{AlignError, Ends};
 use crate::clip::Clip;
 use crate::measure::{Distance, Measurable, compare, compare_frames};
 use crate::pack::Metric;
+use crate::pack::layout::row_major;
 use crate::rig::Rig;
 
 /// Why an evaluation is impossible.
@@ -107,9 +107,7 @@ pub fn evaluate(pack: &Pack, rig: &Rig, recorded: &[Metric]) -> Result<Report, E
     };
     let (count, channels) = (components.meta().count as usize, 3 * rig.joints());
     let matrix = |name| -> Result<Vec<f64>, LoadError> {
-        let tiles: &[[f32; ROWS]] = pack.slice(name, channels.div_ceil(ROWS) * count)?;
-        let at = |r: usize, k: usize| f64::from(tiles[r / ROWS * count + k][r % ROWS]);
-        Ok((0..channels).flat_map(|r| (0..count).map(move |k| (r, k))).map(|(r, k)| at(r, k)).collect())
+        Ok(row_major(pack, name, channels, count)?.into_iter().map(f64::from).collect())
     };
     let (content, change) = (matrix("components/compose")?, matrix("components/change")?);
     let norm = |values: &[f64]| values.iter().map(|x| x * x).sum::<f64>().sqrt();

@@ -9,10 +9,10 @@ use super::features::{Projection, features};
 use super::keyframes::Keyframes;
 use super::model::{EmotionModel, HostEmotion};
 use super::motions::Example;
-use super::pairs::{Pairs, pair_accuracy, spearman};
 use super::play::Strengths;
 use super::segment::{Cut, Segment, cut};
 use crate::clip::Clip;
+use crate::learn::{Pairs, pair_accuracy, spearman};
 use crate::rig::{Rig, RigError};
 
 /// Why a pack cannot read motions.

@@ -7,9 +7,9 @@ use kinesic::pose::{Heading, World, forward};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::model::{Attribute, EmotionModel};
-use super::regress::Regression;
 use crate::clip::JointMap;
 use crate::gait::{Manner, skeleton, walk};
+use crate::learn::Regression;
 use crate::rig::{MAX_JOINTS, Rig};
 
 /// Keyframes, the paper's.

@@ -6,7 +6,7 @@ use kinesic::kernel::ROWS;
 use kinesic::model::{ATTRIBUTES, AttributeMeta, EmotionMeta, Kind, LoadError, ModelMeta};
 
 use super::features::Projection;
-use super::regress::Regression;
+use crate::learn::Regression;
 use crate::pack::{PackWriter, Provenance};
 use crate::rig::{MAX_JOINTS, Rig};
 
