@@ -49,6 +49,13 @@ pub struct Metric {
     pub value: f64,
 }
 
+impl Metric {
+    /// A figure under its name.
+    pub fn new(name: impl Into<String>, value: f64) -> Self {
+        Self { name: name.into(), value }
+    }
+}
+
 /// Static models fitted on the same training data. Translation: on heading-local positions in metres, as the fields say. Body
 /// mechanics: `offset` is the mean pose (quaternions x, y, z, w of all joints but the hips), `affine` the linear regression
 /// from the features to it, `[(features + 1) x 4 (joints - 1)]`, the constant last.

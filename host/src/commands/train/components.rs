@@ -7,16 +7,16 @@ use kinesic_host::components::{
     to_clip, trade_off, train_kept,
 };
 use kinesic_host::measure::Distance;
-use kinesic_host::pack::{InputFile, Metric, PackFile, Provenance};
-use kinesic_host::prepare::{Source, fingerprint};
+use kinesic_host::pack::{Metric, PackFile};
+use kinesic_host::prepare::Source;
 use kinesic_host::reached::Reached;
-use miette::{IntoDiagnostic, WrapErr};
+use miette::IntoDiagnostic;
 use serde::Serialize;
 
 use super::report::{ReportArgs, components::page};
 use super::resume::ResumeArgs;
+use super::session::{Session, fingerprints};
 use crate::commands::clips::Reading;
-use crate::commands::output::{check_output, command_line, print_json, spinner, write_whole};
 use crate::commands::precision::Precision;
 
 /// Style weights of the trade-off curve.
@@ -107,24 +107,19 @@ fn count(text: &str) -> Result<Count, String> {
 
 /// Runs the command.
 pub fn run(args: &Args) -> miette::Result<()> {
-    check_output(&args.out, "kin")?;
+    let session = Session::begin(&args.out, args.seed, args.json, &args.report)?;
     args.precision.check("style components", None)?;
-    args.report.check(&args.out)?;
     let reading = args.reading.options()?;
-    let bar = spinner();
-    bar.set_message("reading the clips");
+    session.say("reading the clips");
     let read = |path: &Path| Source::read(path, &reading).into_diagnostic();
     let (content, style) = (read(&args.content)?, read(&args.style)?);
     let rig = content.rig().into_diagnostic()?;
     let on_rig = |source: &Source| source.on_rig(&rig, FRAME_RATE).into_diagnostic();
     let (content, style) = (on_rig(&content)?, on_rig(&style)?);
-    bar.set_message("factorising and learning");
+    session.say("factorising and learning");
     let options = args.options();
-    let name = args.name.clone().unwrap_or_else(|| file_stem(&args.out));
-    let prints: Vec<InputFile> = [&args.content, &args.style]
-        .into_iter()
-        .map(|path| fingerprint(path).into_diagnostic().wrap_err_with(|| path.display().to_string()))
-        .collect::<Result<_, _>>()?;
+    let name = session.name(args.name.as_ref(), "style");
+    let prints = fingerprints([&args.content, &args.style])?;
     // The same options and the same clips, read in the same way: the same training.
     let deciding = [format!("components {options:?} {}", args.curve), format!("{prints:?}"), args.reading.deciding()?];
     let mut checkpoint = args.resume.checkpoint(&args.out, &deciding)?;
@@ -133,29 +128,15 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let curve = if args.curve { trade_off(&rig, &trained, &options, &CURVE, &reached) } else { Vec::new() };
     drop(reached);
 
-    let mut provenance = Provenance {
-        tool: format!("kinesic {}", env!("CARGO_PKG_VERSION")),
-        command: command_line(),
-        seed: args.seed,
-        inputs: prints,
-        metrics: recorded(&trained),
-        notes: vec![trained.choice.reason.clone()],
-        ..Provenance::default()
-    };
+    let mut provenance = session.provenance(prints, vec![trained.choice.reason.clone()]);
+    provenance.metrics = recorded(&trained);
     let preview = PackFile::from_bytes(&trained.model.pack(&rig, &provenance));
     let report = evaluate(&preview.pack().into_diagnostic()?, &rig, &provenance.metrics).into_diagnostic()?;
     let to_style = to_clip(&preview.pack().into_diagnostic()?, &rig, &style).into_diagnostic()?;
     provenance.metrics.extend(measured(&report));
     let bytes = trained.model.pack(&rig, &provenance);
-    write_whole(&args.out, &bytes)?;
-    let file = PackFile::from_bytes(&bytes);
-    args.report.write(
-        &args.out,
-        &file,
-        page(&trained, &report, &to_style, &curve, [&content, &style], &rig, &file)?,
-    )?;
-    checkpoint.finish();
-    bar.finish_and_clear();
+    let file = session.write(&bytes)?;
+    let page = page(&trained, &report, &to_style, &curve, [&content, &style], &rig, &file)?;
     let summary = Summary {
         pack: args.out.display().to_string(),
         bytes: bytes.len(),
@@ -169,12 +150,10 @@ pub fn run(args: &Args) -> miette::Result<()> {
         training: &report,
         to_style: &to_style,
     };
-    if args.json {
-        print_json(&summary)
-    } else {
-        print(&summary);
+    session.finish(&file, page, Some(checkpoint), &summary, |summary| {
+        print(summary);
         Ok(())
-    }
+    })
 }
 
 impl Args {
@@ -201,27 +180,19 @@ impl Args {
     }
 }
 
-fn file_stem(path: &Path) -> String {
-    path.file_stem().map_or_else(|| "style".to_owned(), |stem| stem.to_string_lossy().into_owned())
-}
-
-fn metric(name: &str, value: f64) -> Metric {
-    Metric { name: name.to_owned(), value }
-}
-
 fn recorded(trained: &Trained) -> Vec<Metric> {
-    vec![metric(RECORDED[0], trained.reconstruction_error), metric(RECORDED[1], trained.style_distance)]
+    vec![Metric::new(RECORDED[0], trained.reconstruction_error), Metric::new(RECORDED[1], trained.style_distance)]
 }
 
 fn measured(report: &Report) -> Vec<Metric> {
     vec![
-        metric("density", report.density),
-        metric("content_distance", report.content_distance),
-        metric("bone_error_max_percent", report.bone_error_max_percent),
-        metric("jerk_ratio", report.jerk_ratio),
-        metric("change_cm", report.change.cm),
-        metric("change_degrees", report.change.degrees.all),
-        metric("change_degrees_leaves", report.change.degrees.leaves),
+        Metric::new("density", report.density),
+        Metric::new("content_distance", report.content_distance),
+        Metric::new("bone_error_max_percent", report.bone_error_max_percent),
+        Metric::new("jerk_ratio", report.jerk_ratio),
+        Metric::new("change_cm", report.change.cm),
+        Metric::new("change_degrees", report.change.degrees.all),
+        Metric::new("change_degrees_leaves", report.change.degrees.leaves),
     ]
 }
 
