@@ -3,14 +3,15 @@
 //! Scales are not guessed from clips: a state's scale is the largest at which no input within the kernel's range can take it out
 //! of its own, the sum of the sizes of its impulse response. So nothing saturates, whatever comes in.
 
-use kinesic::{Pack, Rig};
 use kinesic::kernel::{
     Block, INPUT_BITS, JOINT_INPUT_CUT, JointBlock, LARGEST_INPUT, LARGEST_JOINT_ROW, LARGEST_ROW, OUTPUT_BITS,
     STATE_BITS, TRANSITION_BITS, is_stable,
 };
 use kinesic::model::{Form, LoadError, TensorType, TranslatorMeta};
+use kinesic::{Pack, Rig};
 
-use super::{QuantiseError, named, row_major};
+use super::{QuantiseError, named};
+use crate::pack::layout::row_major;
 use crate::pack::{PackFile, PackWriter, Provenance};
 
 /// Largest shift that a pack may hold.

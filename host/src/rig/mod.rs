@@ -180,11 +180,7 @@ impl Rig {
     }
 
     /// What `turn` makes of every pose's frame, written as the device writes it.
-    pub fn restyle(
-        &self,
-        poses: &[Pose<MAX_JOINTS>],
-        mut turn: impl FnMut(&mut HostFrame),
-    ) -> Vec<Pose<MAX_JOINTS>> {
+    pub fn restyle(&self, poses: &[Pose<MAX_JOINTS>], mut turn: impl FnMut(&mut HostFrame)) -> Vec<Pose<MAX_JOINTS>> {
         let rig = self.frames();
         let (mut source, mut drift) = (HostFrame::new(), Drift::new());
         let styled = poses.iter().map(|pose| {

@@ -1,7 +1,7 @@
 //! Plays a pack through the device's own code, frame by frame.
 
-use kinesic::model::LoadError;
 use kinesic::engine::Controls;
+use kinesic::model::LoadError;
 use kinesic::{Pack, Pose, Translator, TranslatorState};
 use nalgebra::UnitQuaternion;
 

@@ -8,13 +8,15 @@ use kinesic_host::prepare::{Source, fingerprint};
 use kinesic_host::rig::Rig;
 use miette::{IntoDiagnostic, miette};
 
+use crate::commands::angles;
 use crate::commands::clips::{Reading, clip_paths};
 use crate::commands::output::{print_json, spinner};
 
 /// Measure how near the predicted pose is, and how much expression is left, clip by clip
 ///
 /// Angles are geodesic, means over the joints that move and over all frames. Beside the pack: linear regression from the same
-/// features, and the mean pose, both fitted on the pack's training clips.
+/// features, and the mean pose, both fitted on the pack's training clips. A second table is over all joints of the skeleton, with
+/// the distance of the joints in centimetres.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -33,7 +35,8 @@ pub struct Args {
     /// Random seed; the measurement makes no random choice
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Print one JSON object: autoencoder_mse, stacked_mse, geodesic_deg, linear_deg, mean_pose_deg, expressive_deg, and every clip
+    /// Print one JSON object: autoencoder_mse, stacked_mse, geodesic_deg, linear_deg, mean_pose_deg, expressive_deg, distances
+    /// (cm and degrees over all joints, leaves, inner joints and by joint, with swing and twist), and every clip
     #[arg(long)]
     json: bool,
     #[command(flatten)]
@@ -91,4 +94,13 @@ fn print(report: &Report) {
     }
     let mean = [report.geodesic_deg, report.linear_deg, report.mean_pose_deg, report.expressive_deg];
     row(mean, &format!("all {}, MSE {:.5}", report.clips.len(), report.stacked_mse));
+    let models = [
+        ("mean pose", &report.distances.mean_pose),
+        ("linear", &report.distances.linear),
+        ("predicted", &report.distances.predicted),
+    ];
+    println!();
+    println!("all joints, frame for frame: RMS joint distance, cm; {}", angles::CAPTION);
+    println!("{}   cm", models.map(|(_, distance)| format!("{:>10.2}", distance.cm)).concat());
+    angles::print(&models.map(|(name, distance)| (name, Some(&distance.degrees))));
 }

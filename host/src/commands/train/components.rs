@@ -3,19 +3,20 @@
 use std::path::{Path, PathBuf};
 
 use kinesic_host::components::{
-    FRAME_RATE, Optimiser, RECORDED, Report, Sparsity, TradeOff, TrainOptions, Trained, Weights, evaluate, trade_off,
-    train_kept,
+    FRAME_RATE, Optimiser, RECORDED, Report, Sparsity, ToClip, TradeOff, TrainOptions, Trained, Weights, evaluate,
+    to_clip, trade_off, train_kept,
 };
-use kinesic_host::pack::{InputFile, Metric, PackFile, Provenance};
-use kinesic_host::prepare::{Source, fingerprint};
+use kinesic_host::measure::Distance;
+use kinesic_host::pack::{Metric, PackFile};
+use kinesic_host::prepare::Source;
 use kinesic_host::reached::Reached;
-use miette::{IntoDiagnostic, WrapErr};
+use miette::IntoDiagnostic;
 use serde::Serialize;
 
 use super::report::{ReportArgs, components::page};
 use super::resume::ResumeArgs;
+use super::session::{Session, fingerprints};
 use crate::commands::clips::Reading;
-use crate::commands::output::{check_output, command_line, print_json, spinner, write_whole};
 use crate::commands::precision::Precision;
 
 /// Style weights of the trade-off curve.
@@ -103,25 +104,20 @@ fn count(text: &str) -> Result<Count, String> {
 
 /// Runs the command.
 pub fn run(args: &Args) -> miette::Result<()> {
-    check_output(&args.out, "kin")?;
+    let session = Session::begin(&args.out, args.seed, args.json, &args.report)?;
     args.precision.check("style components", None)?;
-    args.report.check(&args.out)?;
     let reading = args.reading.options()?;
-    let bar = spinner();
-    bar.set_message("reading the clips");
+    session.say("reading the clips");
     let read = |path: &Path| Source::read(path, &reading).into_diagnostic();
     let (content, style) = (read(&args.content)?, read(&args.style)?);
     let rig = content.rig().into_diagnostic()?;
     let on_rig = |source: &Source| source.on_rig(&rig, FRAME_RATE).into_diagnostic();
     let (content, style) = (on_rig(&content)?, on_rig(&style)?);
     let rig = rig.centred(&[&rig.poses(&content), &rig.poses(&style)]);
-    bar.set_message("factorising and learning");
+    session.say("factorising and learning");
     let options = args.options();
-    let name = args.name.clone().unwrap_or_else(|| file_stem(&args.out));
-    let prints: Vec<InputFile> = [&args.content, &args.style]
-        .into_iter()
-        .map(|path| fingerprint(path).into_diagnostic().wrap_err_with(|| path.display().to_string()))
-        .collect::<Result<_, _>>()?;
+    let name = session.name(args.name.as_ref(), "style");
+    let prints = fingerprints([&args.content, &args.style])?;
     // The same options and the same clips, read in the same way: the same training.
     let deciding = [format!("components {options:?} {}", args.curve), format!("{prints:?}"), args.reading.deciding()?];
     let mut checkpoint = args.resume.checkpoint(&args.out, &deciding)?;
@@ -130,24 +126,15 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let curve = if args.curve { trade_off(&trained, &options, &CURVE, &reached) } else { Vec::new() };
     drop(reached);
 
-    let mut provenance = Provenance {
-        tool: format!("kinesic {}", env!("CARGO_PKG_VERSION")),
-        command: command_line(),
-        seed: args.seed,
-        inputs: prints,
-        metrics: recorded(&trained),
-        notes: vec![trained.choice.reason.clone()],
-        ..Provenance::default()
-    };
+    let mut provenance = session.provenance(prints, vec![trained.choice.reason.clone()]);
+    provenance.metrics = recorded(&trained);
     let preview = PackFile::from_bytes(&trained.model.pack(&rig, &provenance));
     let report = evaluate(&preview.pack().into_diagnostic()?, &rig, &provenance.metrics).into_diagnostic()?;
+    let to_style = to_clip(&preview.pack().into_diagnostic()?, &rig, &style).into_diagnostic()?;
     provenance.metrics.extend(measured(&report));
     let bytes = trained.model.pack(&rig, &provenance);
-    write_whole(&args.out, &bytes)?;
-    let file = PackFile::from_bytes(&bytes);
-    args.report.write(&args.out, &file, page(&trained, &report, &curve, [&content, &style], &rig, &file)?)?;
-    checkpoint.finish();
-    bar.finish_and_clear();
+    let file = session.write(&bytes)?;
+    let page = page(&trained, &report, &to_style, &curve, [&content, &style], &rig, &file)?;
     let summary = Summary {
         pack: args.out.display().to_string(),
         bytes: bytes.len(),
@@ -159,13 +146,12 @@ pub fn run(args: &Args) -> miette::Result<()> {
         strength: trained.model.strength,
         curve: &curve,
         training: &report,
+        to_style: &to_style,
     };
-    if args.json {
-        print_json(&summary)
-    } else {
-        print(&summary);
+    session.finish(&file, page, Some(checkpoint), &summary, |summary| {
+        print(summary);
         Ok(())
-    }
+    })
 }
 
 impl Args {
@@ -187,27 +173,21 @@ impl Args {
     }
 }
 
-fn file_stem(path: &Path) -> String {
-    path.file_stem().map_or_else(|| "style".to_owned(), |stem| stem.to_string_lossy().into_owned())
-}
-
-fn metric(name: &str, value: f64) -> Metric {
-    Metric { name: name.to_owned(), value }
-}
-
 fn recorded(trained: &Trained) -> Vec<Metric> {
-    let (before, after) = (trained.degrees_before, trained.degrees_after);
+    let (before, after) = (&trained.degrees_before, &trained.degrees_after);
     let values =
         [trained.reconstruction_error, trained.style_distance, before.all, before.leaves, after.all, after.leaves];
-    RECORDED.into_iter().zip(values).map(|(name, value)| metric(name, value)).collect()
+    RECORDED.into_iter().zip(values).map(|(name, value)| Metric::new(name, value)).collect()
 }
 
 fn measured(report: &Report) -> Vec<Metric> {
     vec![
-        metric("density", report.density),
-        metric("content_distance", report.content_distance),
-        metric("moved_leaf_degrees", report.moved_degrees.leaves),
-        metric("jerk_ratio", report.jerk_ratio),
+        Metric::new("density", report.density),
+        Metric::new("content_distance", report.content_distance),
+        Metric::new("jerk_ratio", report.jerk_ratio),
+        Metric::new("change_cm", report.change.cm),
+        Metric::new("change_degrees", report.change.degrees.all),
+        Metric::new("change_degrees_leaves", report.change.degrees.leaves),
     ]
 }
 
@@ -224,6 +204,7 @@ struct Summary<'a> {
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     curve: &'a [TradeOff],
     training: &'a Report,
+    to_style: &'a ToClip,
 }
 
 fn print(summary: &Summary) {
@@ -244,6 +225,12 @@ fn print(summary: &Summary) {
         report.degrees_after.all, report.degrees_before.all, report.degrees_after.leaves, report.degrees_before.leaves
     );
     println!("jerk           {:8.2}  times the content's", report.jerk_ratio);
+    let row = |name: &str, Distance { cm, degrees }: &Distance| {
+        println!("{name:<14} {cm:8.2}  cm {:8.2} degrees {:8.2} degrees at the leaves", degrees.all, degrees.leaves);
+    };
+    row("change", &report.change);
+    row("content: style", &summary.to_style.identity);
+    row("result: style", &summary.to_style.error);
     if !summary.curve.is_empty() {
         println!("style weight   style distance   content distance");
         for point in summary.curve {
