@@ -44,7 +44,9 @@ fn an_int16_translator_is_within_a_tenth_of_a_degree() {
     assert_eq!(bytes, to_int16(&file, &Provenance::default()).unwrap());
     let rounded = PackFile::from_bytes(&bytes);
     let clips = [Manner::NEUTRAL, Manner::WEARY].map(|manner| unseen(&file, &manner));
-    let found = translated_difference(&file.pack().unwrap(), &rounded.pack().unwrap(), &clips).unwrap();
+    let pack = file.pack().unwrap();
+    let rig = Rig::from_pack(&pack).unwrap();
+    let found = translated_difference(&pack, &rounded.pack().unwrap(), &rig, &clips).unwrap();
     println!("{found:?}, {} bytes instead of {}", bytes.len(), file.bytes().len());
     assert!(found.frames > 600 && found.mean_deg > 1e-5 && found.mean_deg < 0.1, "{found:?}");
     assert!(bytes.len() < file.bytes().len());
