@@ -22,7 +22,14 @@ pub struct Frame<const ROWS: usize> {
 impl<const ROWS: usize> Frame<ROWS> {
     /// All coordinates 0, at the origin, facing +Z.
     pub const fn new() -> Self {
-        Self { rows: [[0.0; 3]; ROWS], heading: Heading::FORWARD, ground: [0.0; 2], leap: [0.0; 2], started: false, known: false }
+        Self {
+            rows: [[0.0; 3]; ROWS],
+            heading: Heading::FORWARD,
+            ground: [0.0; 2],
+            leap: [0.0; 2],
+            started: false,
+            known: false,
+        }
     }
 
     /// A frame of coordinates in order, for a machine that stands: servo angles, say. Numbers past the rows are left out.

@@ -34,4 +34,3 @@ pub use frame::Frame;
 pub use joint::JointKind;
 pub use model::Rig;
 pub use rotation::{exp, log};
-

@@ -66,7 +66,8 @@ impl<'a> Rig<'a> {
             true => Ok(()),
             false => Err(LoadError::Shape { tensor, found, expected: joints }),
         };
-        let value = |tensor, index: Option<usize>| index.map_or(Ok(()), |index| Err(LoadError::Value { tensor, index }));
+        let value =
+            |tensor, index: Option<usize>| index.map_or(Ok(()), |index| Err(LoadError::Value { tensor, index }));
         if joints == 0 || joints > u16::MAX as usize {
             return Err(LoadError::Shape { tensor: "rig/kinds", found: joints, expected: 1 });
         }

@@ -38,12 +38,7 @@ fn made(name: &str, frames: usize, fixed: bool) -> Result<(Vec<u8>, Vec<Vec<f32>
 }
 
 /// One pack of a translator and limits, on the rig of the limits.
-pub fn with_limits(
-    name: &str,
-    rig: &Rig,
-    translator: &[u8],
-    limits: &LimitsModel,
-) -> Result<Vec<u8>, WorkloadError> {
+pub fn with_limits(name: &str, rig: &Rig, translator: &[u8], limits: &LimitsModel) -> Result<Vec<u8>, WorkloadError> {
     let refused = |_| WorkloadError::Refused { name: name.to_owned() };
     let words = aligned(translator);
     let part = Pack::load(&bytemuck::cast_slice(&words)[..translator.len()]).map_err(refused)?;

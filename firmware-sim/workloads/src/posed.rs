@@ -43,8 +43,7 @@ impl<C: Composition<ROWS>, const JOINTS: usize, const ROWS: usize> Workload for 
     }
 
     fn power_on(_: &Self::Model<'_>) -> Self::State {
-        let mut running =
-            Running { state: PipelineState::new(), source: Pose::identity(), out: Pose::identity() };
+        let mut running = Running { state: PipelineState::new(), source: Pose::identity(), out: Pose::identity() };
         C::set(&mut running.state.engine);
         running
     }
@@ -149,7 +148,8 @@ pub type WholeBody = Posed<Translating<STATES, Floats>, JOINTS, { JOINTS + 1 }>;
 /// The same in fixed point.
 pub type WholeBodyFixed = Posed<Translating<STATES, Integers>, JOINTS, { JOINTS + 1 }>;
 /// Either form as training makes it from recorded clips, up to order 40 per joint.
-pub type Recorded = Posed<Translating<{ (RECORDED_JOINTS + 1) * 40 }, Floats>, RECORDED_JOINTS, { RECORDED_JOINTS + 1 }>;
+pub type Recorded =
+    Posed<Translating<{ (RECORDED_JOINTS + 1) * 40 }, Floats>, RECORDED_JOINTS, { RECORDED_JOINTS + 1 }>;
 /// Thirty components.
 pub type Restyle = Posed<Restyling<COUNT>, SHORT_JOINTS, { SHORT_JOINTS + 1 }>;
 /// Limits alone.
