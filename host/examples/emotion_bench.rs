@@ -19,9 +19,8 @@ use kinesic_host::emotion::labels::{self, Attribute};
 use kinesic_host::emotion::motions::{self, Example, Motion, features, pairs, takes};
 use kinesic_host::emotion::play::{Settings, play};
 use kinesic_host::emotion::segment::{Cut, FRAME_RATE, Segment};
-use kinesic_host::emotion::{
-    HostEmotion, RankOptions, Samples, TrainOptions, choose_cost, pair_accuracy, rank, spearman, train,
-};
+use kinesic_host::emotion::{HostEmotion, TrainOptions, train};
+use kinesic_host::learn::{RankOptions, Samples, choose_cost, pair_accuracy, rank, spearman};
 use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_host::rig::Rig;
 use nalgebra::{UnitQuaternion, Vector4};

@@ -14,7 +14,7 @@ use kinesic_host::clip::JointMap;
 use kinesic_host::embed::rust_module;
 use kinesic_host::emotion::evaluate::Scorer;
 use kinesic_host::gait::{Manner, walk};
-use kinesic_host::limit::LimitsModel;
+use kinesic_host::limit::HostLimiter;
 use kinesic_host::mechanics::decouple;
 use kinesic_host::pack::PackFile;
 use kinesic_host::prepare::Source;
@@ -94,7 +94,8 @@ fn fields(pack: &mut Hostile) -> (Vec<&mut f32>, Vec<&mut u32>) {
                     &mut m.root_acceleration,
                     &mut m.hold,
                     &mut m.decay,
-                    &mut m.frozen,
+                    &mut m.heading_velocity,
+                    &mut m.heading_acceleration,
                 ]);
             }
         }
@@ -165,7 +166,7 @@ fn use_everywhere(file: &PackFile, shown: &Shown) -> bool {
     let _ = page("title", "made", &view, WASM);
     let _ = to_int8(file, &provenance);
     let _ = to_int16(file, &provenance);
-    let _ = LimitsModel::from_pack(&pack).map(|limits| limits.recovery_frames());
+    let _ = HostLimiter::load(&pack).map(|limiter| limiter.recovery_frames());
     if let Ok(rig) = Rig::from_pack(&pack)
         && let Ok(clip) = shown.clip.source.on_rig(&rig, f64::from(pack.metadata().frame_rate))
     {
@@ -184,7 +185,7 @@ fn changed_packs_are_refused_or_used_in_bounded_time_and_memory() {
     let packs = NAMES.map(|name| Hostile::of(&PackFile::read(&folder.join(name)).unwrap()));
     let clip = walk(&Manner::NEUTRAL, 1.0, 60.0, 0.0, 1);
     let map = JointMap::detect(&clip.skeleton).unwrap();
-    let source = Source { path: "walk".into(), clip, map };
+    let source = Source { path: "walk".into(), clip, map, log: None };
     let shown = Shown { clip: ViewClip { name: "walk".to_owned(), source, target: None } };
     let (mut loaded, mut slowest) = (0, (Duration::ZERO, 0));
     for case in 0..cases {

@@ -108,7 +108,7 @@ fn heads_and_hands_are_styled() {
         assert!(before > 5.0 && after < 0.2 * before, "joint {joint}: {before} before, {after} after");
     }
     let trained = trained(&rig);
-    let (before, after) = (trained.degrees_before, trained.degrees_after);
+    let (before, after) = (&trained.degrees_before, &trained.degrees_after);
     assert!(after.leaves < 0.6 * before.leaves && after.all < 0.8 * before.all, "{before:?} {after:?}");
 }
 
@@ -200,6 +200,6 @@ fn the_report_agrees_with_the_training() {
     let report = evaluate(&file.pack().expect("loads"), &rig, &recorded).expect("evaluates");
     assert!((report.content_distance - trained.content_distance).abs() < 1e-5);
     assert!((report.density - trained.content.factors.density()).abs() < 1e-9);
-    assert!(report.moved_cm > 1.0 && report.moved_degrees.leaves > 1.0, "{report:?}");
+    assert!(report.change.cm > 1.0 && report.change.degrees.leaves > 1.0, "{report:?}");
     assert!(evaluate(&file.pack().expect("loads"), &rig, &[]).is_err());
 }

@@ -47,7 +47,7 @@ fn real_pairs_come_nearer_to_the_style_heads_and_hands_too() {
         let rig = rig.centred(&[&rig.poses(&a), &rig.poses(&b)]);
         let options = TrainOptions { count: Some(30), ..TrainOptions::default() };
         let trained = train(&rig, &a, &b, "style", &options).expect("trains");
-        let (before, after) = (trained.degrees_before, trained.degrees_after);
+        let (before, after) = (&trained.degrees_before, &trained.degrees_after);
         println!("{names:?}: {before:?} before, {after:?} after");
         assert!(after.all < before.all && after.leaves < before.leaves, "{names:?}: {before:?}, {after:?}");
     }

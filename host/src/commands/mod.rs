@@ -3,6 +3,7 @@
 #[macro_use]
 mod say;
 
+mod angles;
 mod apply;
 mod blend;
 mod clips;

@@ -1,15 +1,17 @@
 //! What a pack of components does, measured through the device's code.
 
 use kinesic::Pack;
-use kinesic::kernel::ROWS;
 use kinesic::model::LoadError;
 use serde::Serialize;
 
-use super::degrees::{Degrees, degrees};
 use super::matrix::FRAME_RATE;
 use super::measure::jerk;
 use super::play::{HostComponents, Settings, play_stored};
+use crate::align::{AlignError, Ends};
+use crate::clip::Clip;
+use crate::measure::{Distance, Measurable, compare, compare_frames};
 use crate::pack::Metric;
+use crate::pack::layout::row_major;
 use crate::rig::Rig;
 
 /// Why an evaluation is impossible.
@@ -19,6 +21,9 @@ pub enum EvaluateError {
     /// The pack holds no components, or more than the host steps.
     #[error(transparent)]
     Load(#[from] LoadError),
+    /// Two motions cannot be compared.
+    #[error(transparent)]
+    Align(#[from] AlignError),
     /// There is nothing to play.
     #[error("the pack holds no stored stream of weights: train it again with this release")]
     NoStream,
@@ -38,23 +43,57 @@ pub struct Report {
     /// `|Gram(C_S) - Gram(C_X)| / |Gram(C_S)|` (recorded).
     pub style_distance: f64,
     /// Angles from the content to the style, frames matched by dynamic time warping (recorded).
-    pub degrees_before: Degrees,
+    pub degrees_before: RecordedDegrees,
     /// Angles from the restyled content to the style, matched alike (recorded).
-    pub degrees_after: Degrees,
+    pub degrees_after: RecordedDegrees,
     /// Number of components.
     pub components: usize,
     /// Share of the joint groups of the content components that are not zero.
     pub density: f64,
     /// `|C_C - C_X| / |C_C|`.
     pub content_distance: f64,
-    /// Mean distance of a joint's heading-local positions in the stored stream at strength 1 from those at strength 0, cm.
-    pub moved_cm: f64,
-    /// Mean angles between the same two.
-    pub moved_degrees: Degrees,
     /// Jerk of the stored stream at strength 1 over that at strength 0.
     pub jerk_ratio: f64,
     /// Mean size of the third derivative of the joints' heading-local positions at strength 1, m/s^3.
     pub jerk: f64,
+    /// How far strength 1 takes the stored stream from strength 0, frame for frame.
+    pub change: Distance,
+}
+
+/// Mean angles that a training recorded, degrees.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct RecordedDegrees {
+    /// Over all joints.
+    pub all: f64,
+    /// Over the joints from which no other joint hangs: head, hands, feet.
+    pub leaves: f64,
+}
+
+/// How far the stored stream is from a clip, at the best alignment in time.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ToClip {
+    /// At strength 1.
+    pub error: Distance,
+    /// At strength 0: doing nothing.
+    pub identity: Distance,
+}
+
+/// Plays the stored stream with and without the style and compares both with a clip on the rig at [`FRAME_RATE`].
+pub fn to_clip(pack: &Pack, rig: &Rig, clip: &Clip) -> Result<ToClip, EvaluateError> {
+    let (target, [styled, plain]) = (Measurable::new(rig, clip), streams(pack, rig)?);
+    let to_target = |motion| compare(rig, motion, &target, Ends::Closed);
+    Ok(ToClip { error: to_target(&styled)?, identity: to_target(&plain)? })
+}
+
+/// The stored stream at strength 1 and at strength 0.
+fn streams(pack: &Pack, rig: &Rig) -> Result<[Measurable; 2], EvaluateError> {
+    if HostComponents::load(pack)?.frames() == 0 {
+        return Err(EvaluateError::NoStream);
+    }
+    let mut settings = Settings::default();
+    let styled = Measurable::of_poses(rig, &play_stored(pack, rig, &settings)?);
+    settings.controls.strength = 0.0;
+    Ok([styled, Measurable::of_poses(rig, &play_stored(pack, rig, &settings)?)])
 }
 
 /// Names under which the training records what [`evaluate`] cannot measure.
@@ -70,9 +109,7 @@ pub const RECORDED: [&str; 6] = [
 /// Plays the stored stream and measures it.
 pub fn evaluate(pack: &Pack, rig: &Rig, recorded: &[Metric]) -> Result<Report, EvaluateError> {
     let components = HostComponents::load(pack)?;
-    if components.frames() == 0 {
-        return Err(EvaluateError::NoStream);
-    }
+    let [styled, plain] = streams(pack, rig)?;
     let find = |name: &'static str| {
         recorded.iter().find(|m| m.name == name).map(|m| m.value).ok_or(EvaluateError::NoMetric { name })
     };
@@ -83,9 +120,7 @@ pub fn evaluate(pack: &Pack, rig: &Rig, recorded: &[Metric]) -> Result<Report, E
     let [reconstruction_error, style_distance, before, leaves_before, after, leaves_after] = found;
     let (count, channels) = (components.meta().count as usize, 3 * rig.rows());
     let matrix = |name| -> Result<Vec<f64>, LoadError> {
-        let tiles: &[[f32; ROWS]] = pack.slice(name, channels.div_ceil(ROWS) * count)?;
-        let at = |r: usize, k: usize| f64::from(tiles[r / ROWS * count + k][r % ROWS]);
-        Ok((0..channels).flat_map(|r| (0..count).map(move |k| (r, k))).map(|(r, k)| at(r, k)).collect())
+        Ok(row_major(pack, name, channels, count)?.into_iter().map(f64::from).collect())
     };
     let (content, change) = (matrix("components/compose")?, matrix("components/change")?);
     let levers = rig.levers();
@@ -98,26 +133,17 @@ pub fn evaluate(pack: &Pack, rig: &Rig, recorded: &[Metric]) -> Result<Report, E
     let groups = (0..rig.rows()).flat_map(|row| (0..count).map(move |k| (row, k)));
     let density = groups.filter(|group| moved(*group)).count() as f64 / (rig.rows() * count).max(1) as f64;
 
-    let mut settings = Settings::default();
-    let styled = play_stored(pack, rig, &settings)?;
-    settings.controls.strength = 0.0;
-    let plain = play_stored(pack, rig, &settings)?;
-    let moved_degrees = degrees(rig, &styled.iter().zip(&plain).collect::<Vec<_>>());
-    let [styled, plain] = [styled, plain].map(|poses| rig.locals(&poses).positions);
-    let jerks = [&styled, &plain].map(|positions| jerk(positions, 3 * rig.joints(), FRAME_RATE));
-    let joints = styled.as_chunks::<3>().0.iter().zip(plain.as_chunks::<3>().0);
-    let moved: f64 = joints.map(|(a, b)| (0..3).map(|c| (a[c] - b[c]).powi(2)).sum::<f64>().sqrt()).sum();
+    let jerks = [&styled, &plain].map(|motion| jerk(&motion.positions, 3 * rig.joints(), FRAME_RATE));
     Ok(Report {
         reconstruction_error,
         style_distance,
-        degrees_before: Degrees { all: before, leaves: leaves_before },
-        degrees_after: Degrees { all: after, leaves: leaves_after },
+        degrees_before: RecordedDegrees { all: before, leaves: leaves_before },
+        degrees_after: RecordedDegrees { all: after, leaves: leaves_after },
         components: count,
         density,
         content_distance: norm(&change) / norm(&content).max(1e-300),
-        moved_cm: 100.0 * moved / (plain.len() / 3).max(1) as f64,
-        moved_degrees,
         jerk_ratio: jerks[0] / jerks[1].max(1e-300),
         jerk: jerks[0],
+        change: compare_frames(rig, &styled, &plain),
     })
 }

@@ -10,13 +10,12 @@
 //! | `count` | how many components |
 //! | `objective`, `learn` | what style learning minimises, with its gradient; Adam from seeded noise |
 //! | [`train()`], `model` | from two clips to a pack; the trade-off curve |
-//! | `play`, `evaluate`, `measure`, `degrees` | through the device's code; jerk, distances, angles |
+//! | `play`, `evaluate`, `measure` | through the device's code; jerk, distances |
 //!
 //! A matrix holds coordinates times their levers: see [`Motion`]. Its groups, *joint groups* here, are rows of coordinates: a ball's
 //! three, or up to three servos.
 
 mod count;
-mod degrees;
 mod evaluate;
 mod factor;
 mod gather;
@@ -34,8 +33,7 @@ mod sparse;
 mod train;
 
 pub use count::{Choice, choose, joint_error};
-pub use degrees::{Degrees, aligned_degrees};
-pub use evaluate::{EvaluateError, RECORDED, Report, evaluate};
+pub use evaluate::{EvaluateError, RECORDED, RecordedDegrees, Report, ToClip, evaluate, to_clip};
 pub use factor::{Descent, Factors, descend};
 pub use gather::gather;
 pub use learn::{Learned, Optimiser, learn, noise};

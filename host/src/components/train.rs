@@ -1,10 +1,10 @@
 //! From two clips to a model.
 
 use faer::Mat;
+use kinesic::Pose;
 use kinesic::model::LoadError;
 
 use super::count::{Choice, choose_kept, fits, kept};
-use super::degrees::{Degrees, aligned_degrees};
 use super::factor::{Factors, column, column_mut, flat, unflat};
 use super::learn::{Learned, Optimiser, learn, noise};
 use super::matrix::{FRAME_RATE, Motion};
@@ -13,11 +13,12 @@ use super::model::ComponentsModel;
 use super::objective::{Objective, Terms, Weights};
 use super::play::{Settings, play_stored};
 use super::sparse::{Sparse, Sparsity};
-use crate::align::AlignError;
+use crate::align::{AlignError, Ends};
 use crate::clip::Clip;
+use crate::measure::{Degrees, Measurable, compare};
 use crate::pack::{PackFile, Provenance};
 use crate::reached::{Reached, Unreadable};
-use crate::rig::{HostFrame, Rig};
+use crate::rig::{HostFrame, MAX_JOINTS, Rig};
 
 /// At a plausible strength the fastest joint is at most so many times faster than the fastest of the training clips.
 const SPEED_UP: f64 = 1.5;
@@ -186,12 +187,16 @@ pub fn train_kept(
     model.strength[1] = plausible(&model, rig, locals.channels(), SPEED_UP * speed.max(style_speed));
     let file = PackFile::from_bytes(&model.pack(rig, &Provenance::default()));
     let result = play_stored(&file.pack()?, rig, &Settings::default())?;
+    let target = Measurable::of_poses(rig, &style_poses);
+    let to_style = |poses: &[Pose<MAX_JOINTS>]| {
+        compare(rig, &Measurable::of_poses(rig, poses), &target, Ends::Closed).map(|distance| distance.degrees)
+    };
     Ok(Trained {
         reconstruction_error: own.factors.error(content.values.as_ref()),
         style_distance: style_distance(&wanted.factors.components, &learned.components),
         content_distance: content_distance(&own.factors.components, &learned.components),
-        degrees_before: aligned_degrees(rig, &poses, &style_poses)?,
-        degrees_after: aligned_degrees(rig, &result, &style_poses)?,
+        degrees_before: to_style(&poses)?,
+        degrees_after: to_style(&result)?,
         model,
         choice,
         content: own,

@@ -8,10 +8,10 @@ use super::features::features;
 use super::keyframes::Keyframes;
 use super::model::{EmotionModel, Reading};
 use super::motions::Example;
-use super::pairs::{Pairs, pair_accuracy, spearman};
 use super::play::{Settings, Strengths, play};
 use super::segment::{Cut, FRAME_RATE, Segment, cut};
 use crate::clip::Clip;
+use crate::learn::{Pairs, pair_accuracy, spearman};
 use crate::rig::{Rig, RigError};
 use crate::vector::dot;
 
@@ -53,6 +53,20 @@ impl Scorer {
         self.model.attributes.iter().map(|attribute| attribute.name.clone()).collect()
     }
 
+    /// The middle of every range of strengths.
+    pub fn middle(&self) -> Strengths {
+        let mut middle = Strengths::default();
+        for (to, attribute) in middle.iter_mut().zip(&self.model.attributes) {
+            *to = attribute.strength[0].midpoint(attribute.strength[1]);
+        }
+        middle
+    }
+
+    /// What of a clip is a motion of the pack.
+    pub fn cut(&self) -> Cut {
+        if self.model.cycle { Cut::Cycles } else { Cut::Whole }
+    }
+
     /// Strength of every attribute in one motion; `None` if it is shorter than the keyframes.
     pub fn score(&self, motion: &Segment) -> Option<Vec<f64>> {
         let features = features(motion, &self.keyframes)?;
@@ -62,8 +76,7 @@ impl Scorer {
 
     /// Strength of every attribute in every motion of a clip (on the rig, at the pack's rate); none without a whole cycle.
     pub fn read(&self, clip: &Clip) -> Vec<Vec<f64>> {
-        let how = if self.model.cycle { Cut::Cycles } else { Cut::Whole };
-        cut(&self.rig, clip, how).iter().filter_map(|motion| self.score(motion)).collect()
+        cut(&self.rig, clip, self.cut()).iter().filter_map(|motion| self.score(motion)).collect()
     }
 
     /// What is read from the motion that a pack of this reader's makes at strengths: from one round of a cycle.

@@ -6,9 +6,9 @@ use kinesic::Pose;
 
 use super::coordinates::{channels, levers, of_poses, positions};
 use super::model::{Attribute, EmotionModel, Reading};
-use super::regress::Regression;
 use crate::clip::JointMap;
 use crate::gait::{Manner, skeleton, walk};
+use crate::learn::Regression;
 use crate::rig::{MAX_JOINTS, Rig};
 
 /// Keyframes, the paper's.

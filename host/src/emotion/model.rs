@@ -5,7 +5,7 @@ use kinesic::emotion::Emotion;
 use kinesic::kernel::ROWS as TILE;
 use kinesic::model::{ATTRIBUTES, AttributeMeta, EmotionMeta, Kind, LoadError, ModelMeta};
 
-use super::regress::Regression;
+use crate::learn::Regression;
 use crate::pack::{PackWriter, Provenance};
 use crate::rig::{MAX_ROWS, Rig};
 

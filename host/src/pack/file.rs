@@ -68,6 +68,6 @@ impl PackFile {
 
     /// Where the pack comes from; `None` if this release cannot read that part.
     pub fn provenance(&self) -> Option<Provenance> {
-        postcard::from_bytes(self.pack().ok()?.metadata().provenance).ok()
+        Provenance::decode(self.pack().ok()?.metadata().provenance)
     }
 }

@@ -10,7 +10,8 @@ use kinesic::kernel::{
 use kinesic::model::{Form, LoadError, TensorType, TranslatorMeta};
 use kinesic::{Pack, Rig};
 
-use super::{QuantiseError, named, row_major};
+use super::{QuantiseError, named};
+use crate::pack::layout::row_major;
 use crate::pack::{PackFile, PackWriter, Provenance};
 
 /// Largest shift that a pack may hold.

@@ -8,6 +8,7 @@ use kinesic_host::prepare::{Source, fingerprint};
 use kinesic_host::rig::Rig;
 use miette::{IntoDiagnostic, miette};
 
+use crate::commands::angles;
 use crate::commands::clips::{Reading, clip_paths};
 use crate::commands::output::{print_json, spinner};
 
@@ -15,7 +16,8 @@ use crate::commands::output::{print_json, spinner};
 ///
 /// Angles are geodesic, means over the joints that move in these clips (by a degree or more) and over all frames. Beside the pack:
 /// linear regression from the same features, and the mean pose, both fitted on the pack's training clips. These two are not measured
-/// here: they are what the pack states.
+/// here: they are what the pack states. A second table is over all joints of the skeleton, with the distance of the joints in
+/// centimetres.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -35,7 +37,8 @@ pub struct Args {
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Print one JSON object: autoencoder_mse, stacked_mse, geodesic_deg, linear_deg, mean_pose_deg, expressive_deg, moving_joints,
-    /// as_the_pack_states, and every clip
+    /// as_the_pack_states, distances (cm and degrees over all joints, leaves, inner joints and by joint, with swing and twist), and
+    /// every clip
     #[arg(long)]
     json: bool,
     #[command(flatten)]
@@ -104,4 +107,13 @@ fn print(report: &Report) {
     }
     let mean = [report.geodesic_deg, report.linear_deg, report.mean_pose_deg, report.expressive_deg];
     row(mean, &format!("all {}, MSE {:.5}", report.clips.len(), report.stacked_mse));
+    let models = [
+        ("mean pose", &report.distances.mean_pose),
+        ("linear", &report.distances.linear),
+        ("predicted", &report.distances.predicted),
+    ];
+    println!();
+    println!("all joints, frame for frame: RMS joint distance, cm; {}", angles::CAPTION);
+    println!("{}   cm", models.map(|(_, distance)| format!("{:>10.2}", distance.cm)).concat());
+    angles::print(&models.map(|(name, distance)| (name, Some(&distance.degrees))));
 }

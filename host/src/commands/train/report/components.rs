@@ -1,16 +1,19 @@
 //! The report of `kinesic train components`.
 
 use kinesic_host::clip::Clip;
-use kinesic_host::components::{FRAME_RATE, Report, Settings, TradeOff, Trained, play_stored};
+use kinesic_host::components::{FRAME_RATE, Report, Settings, ToClip, TradeOff, Trained, play_stored};
 use kinesic_host::pack::PackFile;
 use kinesic_host::report::{Chart, Line, Report as Page, Table, figures};
 use kinesic_host::rig::Rig;
 use miette::IntoDiagnostic;
 
+use crate::commands::angles;
+
 /// The page about a training.
 pub fn page(
     trained: &Trained,
     measured: &Report,
+    to_style: &ToClip,
     curve: &[TradeOff],
     [content, style]: [&Clip; 2],
     rig: &Rig,
@@ -44,8 +47,19 @@ pub fn page(
             row("degrees to the style before, head, hands, feet", format!("{:.1}", measured.degrees_before.leaves)),
             row("degrees to the style after, head, hands, feet", format!("{:.1}", measured.degrees_after.leaves)),
             row("jerk against the content's", format!("{:.2}", measured.jerk_ratio)),
+            row("change of the content, RMS joint distance frame for frame, cm", format!("{:.2}", measured.change.cm)),
+            row("content to style clip, aligned RMS joint distance, cm", format!("{:.2}", to_style.identity.cm)),
+            row("result to style clip, the same, cm", format!("{:.2}", to_style.error.cm)),
         ],
     });
+    page.table(&angles::table(
+        &[
+            ("content to style", Some(&to_style.identity.degrees)),
+            ("result to style", Some(&to_style.error.degrees)),
+            ("change of the content", Some(&measured.change.degrees)),
+        ],
+        "Angles. The two clips need not show the same content, so the result need not come near the style clip",
+    ));
     page.heading("How the learning went").chart(&Chart {
         caption: "Objective of style learning (content + style + smoothness, in squared deviations) over the steps of \
                   Adam from noise."

@@ -4,10 +4,12 @@ use kinesic::Pack;
 use kinesic_host::emotion::evaluate::{Report, Scorer, mean};
 use kinesic_host::emotion::motions::Example;
 use kinesic_host::emotion::play::{Settings, Strengths, play, seconds};
-use kinesic_host::emotion::{HostEmotion, Trained};
+use kinesic_host::emotion::{Distances, HostEmotion, Trained};
 use kinesic_host::report::{Chart, Line, Report as Page, Table, figures};
 use kinesic_host::rig::Rig;
 use miette::IntoDiagnostic;
+
+use crate::commands::angles;
 
 /// Strengths along a curve.
 const STEPS: usize = 41;
@@ -17,6 +19,7 @@ pub fn page(
     trained: &Trained,
     training: &Report,
     held_out: Option<&Report>,
+    distances: &[Option<Distances>; 2],
     scorer: &Scorer,
     examples: &[Example],
     pack: &Pack,
@@ -85,6 +88,23 @@ pub fn page(
         100.0 * trained.keyframe_error,
         100.0 * trained.network_error,
     ));
+    let pairs = distances.iter().zip(["trained on", "held out"]);
+    let named: Vec<_> = pairs.filter_map(|(found, name)| Some((name, found.as_ref()?))).collect();
+    page.table(&Table {
+        caption: "What the pack plays against the recorded motions, at the best alignment in time: at the strengths of the clip's \
+                  labels, and at the middle of the ranges, which no label changes. RMS joint distance, cm"
+            .into(),
+        head: ["clips", "middle", "labels"].map(Into::into).to_vec(),
+        rows: (named.iter())
+            .map(|(name, d)| vec![(*name).into(), format!("{:.2}", d.identity.cm), format!("{:.2}", d.error.cm)])
+            .collect(),
+    });
+    for (name, found) in named {
+        page.table(&angles::table(
+            &[("middle", Some(&found.identity.degrees)), ("labels", Some(&found.error.degrees))],
+            &format!("Angles to the clips {name}"),
+        ));
+    }
     page.chart(&Chart {
         caption: "How long the motion takes at each strength, the other strengths in the middle of their range.".into(),
         x: "strength",

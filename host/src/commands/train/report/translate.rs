@@ -8,6 +8,7 @@ use kinesic_host::translate::{Errors, NamedPair, Report, Settings, Trained, play
 use miette::IntoDiagnostic;
 
 use super::super::translate::{alignment_name, describe};
+use crate::commands::angles;
 
 /// The page about a training.
 pub fn page(trained: &Trained, report: &Report, first: &NamedPair, rig: &Rig, file: &PackFile) -> miette::Result<Page> {
@@ -48,6 +49,7 @@ pub fn page(trained: &Trained, report: &Report, first: &NamedPair, rig: &Rig, fi
             .to_vec(),
         rows,
     });
+    page.table(&angles::table(&angles::columns(&report.errors), "Angle to the target, mean of the training pairs"));
     let (joint, name) = most_changed(rig, source, target);
     let height = |clip: &Clip| (0..clip.frames()).map(|frame| clip.positions(frame)[joint].y).collect::<Vec<f64>>();
     page.chart(&Chart {

@@ -104,6 +104,6 @@ impl Work for Product<'_> {
 
 /// `to += factor from`.
 #[inline(always)]
-pub(super) fn add_scaled(to: &mut [f64], factor: f64, from: &[f64]) {
+pub(crate) fn add_scaled(to: &mut [f64], factor: f64, from: &[f64]) {
     to.iter_mut().zip(from).for_each(|(to, from)| *to += factor * from);
 }
