@@ -248,7 +248,13 @@ fn pack(path: &Path, json: bool) -> miette::Result<()> {
     if json {
         return print_json(&report);
     }
-    println!("{}: {} pack {:?}, format 1, checksum correct", report.file, report.kind, report.name);
+    println!(
+        "{}: {} pack {:?}, format {}, checksum correct",
+        report.file,
+        report.kind,
+        report.name,
+        kinesic::model::VERSION
+    );
     println!("rate       {} frames a second", report.frame_rate);
     println!("size       {} bytes, of which {} are tensors, used in place", report.bytes, report.tensor_bytes);
     println!("joints     {}: {}", joints.len(), report.joints.join(", "));
