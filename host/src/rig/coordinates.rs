@@ -102,8 +102,10 @@ pub(super) fn centred(rig: &Rig, clips: &[&[Pose<MAX_JOINTS>]]) -> Vec<JointCoor
         let mut frame = Frame::<{ super::MAX_ROWS }>::new();
         for pose in *clip {
             device.read(pose, &mut frame);
-            let mut rotations: Vec<UnitQuaternion<f64>> =
-                pose.rotations[..rig.joints()].iter().map(|q| UnitQuaternion::new_normalize(q.into_inner().cast())).collect();
+            let mut rotations: Vec<UnitQuaternion<f64>> = pose.rotations[..rig.joints()]
+                .iter()
+                .map(|q| UnitQuaternion::new_normalize(q.into_inner().cast()))
+                .collect();
             if device.travels() {
                 rotations[0] = frame.heading.rotation().cast().inverse() * rotations[0];
             }
@@ -115,10 +117,16 @@ pub(super) fn centred(rig: &Rig, clips: &[&[Pose<MAX_JOINTS>]]) -> Vec<JointCoor
             }
         }
     }
-    let mean: Vec<UnitQuaternion<f64>> = sums
-        .iter()
-        .map(|sum| if sum.norm() > 1e-9 { UnitQuaternion::new_normalize((*sum).into()) } else { UnitQuaternion::identity() })
-        .collect();
+    let mean: Vec<UnitQuaternion<f64>> =
+        sums.iter()
+            .map(|sum| {
+                if sum.norm() > 1e-9 {
+                    UnitQuaternion::new_normalize((*sum).into())
+                } else {
+                    UnitQuaternion::identity()
+                }
+            })
+            .collect();
     let joints = 0..rig.joints();
     let joint = |index: usize| {
         let partner = rig.map.mirror_partner(index).unwrap_or(index);
@@ -127,7 +135,8 @@ pub(super) fn centred(rig: &Rig, clips: &[&[Pose<MAX_JOINTS>]]) -> Vec<JointCoor
         let image = reflected(&mean[partner]);
         let sign = if image.coords.dot(&mean[index].coords) < 0.0 { -1.0 } else { 1.0 };
         let both = mean[index].coords + image.coords * sign;
-        let reference = if still || !rig.is_symmetrical() { mean[index] } else { UnitQuaternion::new_normalize(both.into()) };
+        let reference =
+            if still || !rig.is_symmetrical() { mean[index] } else { UnitQuaternion::new_normalize(both.into()) };
         JointCoordinates {
             reference: reference.coords.map(|x| x as f32).into(),
             ..JointCoordinates::new(if still { JointKind::Fixed } else { JointKind::Ball })

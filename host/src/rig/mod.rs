@@ -180,11 +180,7 @@ impl Rig {
     }
 
     /// What `turn` makes of every pose's frame, written as the device writes it.
-    pub fn restyle(
-        &self,
-        poses: &[Pose<MAX_JOINTS>],
-        mut turn: impl FnMut(&mut HostFrame),
-    ) -> Vec<Pose<MAX_JOINTS>> {
+    pub fn restyle(&self, poses: &[Pose<MAX_JOINTS>], mut turn: impl FnMut(&mut HostFrame)) -> Vec<Pose<MAX_JOINTS>> {
         let rig = self.frames();
         let (mut source, mut drift) = (HostFrame::new(), Drift::new());
         let styled = poses.iter().map(|pose| {
@@ -198,8 +194,7 @@ impl Rig {
         styled.collect()
     }
 
-    /// The pose whose coordinates are 0: every joint at its reference, those without coordinates too, which
-    /// [`show`](DeviceRig::show) leaves alone.
+    /// The pose whose coordinates are 0: every joint at its reference.
     pub fn zero_pose(&self) -> Pose<MAX_JOINTS> {
         let mut pose = Pose::identity();
         for (to, joint) in pose.rotations.iter_mut().zip(self.joint_coordinates()) {
