@@ -9,6 +9,8 @@ use crate::rig::Rig;
 pub struct Components<'a, const ROWS: usize, const COUNT: usize> {
     pub(super) meta: ComponentsMeta<'a>,
     pub(super) rows: usize,
+    /// The first row is the root's.
+    pub(super) travels: bool,
     /// Mean coordinates of the content, rad or m.
     pub(super) mean: &'a [[f32; 3]],
     /// What the style adds to the mean.
@@ -34,12 +36,14 @@ impl<'a, const ROWS: usize, const COUNT: usize> Components<'a, ROWS, COUNT> {
             .iter()
             .find_map(ModelMeta::components)
             .ok_or(LoadError::NoModel { expected: "style components" })?;
-        let (rows, count, frames) = (Rig::load(pack)?.rows(), meta.count as usize, meta.frames as usize);
+        let rig = Rig::load(pack)?;
+        let (rows, count, frames) = (rig.rows(), meta.count as usize, meta.frames as usize);
         fits("ROWS", rows, ROWS)?;
         fits("COUNT", count, COUNT)?;
         Ok(Self {
             meta,
             rows,
+            travels: rig.travels(),
             mean: pack.slice("components/mean", rows)?,
             shift: pack.slice("components/shift", rows)?,
             project: Tiled::load(pack, "components/project", count, 3 * rows)?,

@@ -27,6 +27,7 @@ impl<const ROWS: usize, const COUNT: usize> Components<'_, ROWS, COUNT> {
     }
 
     /// Plays the next frame of the stored stream, `M_X = W C_X`, into `frame`; after the last frame the first, from where the last ended.
+    /// The stored path is followed by a rig that travels alone.
     ///
     /// Strength 0 gives the content, 1 the learned motion. Without a stored stream `frame` is the mean. Cost: as
     /// [`step`](Self::step).
@@ -40,7 +41,8 @@ impl<const ROWS: usize, const COUNT: usize> Components<'_, ROWS, COUNT> {
         *frame = Frame::new();
         frame.rows.iter_mut().zip(self.mean).for_each(|(row, mean)| *row = *mean);
         self.compose.multiply_add(&weights, frame.rows.as_flattened_mut());
-        if let Some([x, z, sin, cos]) = self.track.get(state.frame).copied() {
+        let track = self.track.get(state.frame).filter(|_| self.travels);
+        if let Some([x, z, sin, cos]) = track.copied() {
             state.heading = state.heading.turned(sin, cos);
             let way = state.heading.to_world(Vector3::new(x, 0.0, z));
             let [at_x, at_z] = state.ground;

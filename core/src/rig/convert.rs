@@ -78,8 +78,8 @@ impl Rig<'_> {
         });
     }
 
-    /// The pose of `styled`, every joint that has coordinates; other joints stay as they are in `pose`. For a frame of its own making,
-    /// or where no pose came. Cost: as [`write`](Self::write) where everything changed.
+    /// The pose of `styled`, every joint of the rig: one without coordinates is at its reference. Joints of the pose that the rig does not
+    /// have stay. For a frame of its own making, or where no pose came. Cost: as [`write`](Self::write) where everything changed.
     pub fn show<const JOINTS: usize, const ROWS: usize>(
         &self,
         source: &Frame<ROWS>,
@@ -88,11 +88,10 @@ impl Rig<'_> {
         pose: &mut Pose<JOINTS>,
     ) {
         self.root(source, styled, drift, pose);
-        self.turn(styled, pose, |joint, _| joint.kind.coordinates() > 0);
+        self.turn(styled, pose, |_, _| true);
     }
 
-    /// The pose at coordinates 0, at the origin: where a pose that came from nowhere begins, since [`show`](Self::show) leaves
-    /// joints without coordinates alone.
+    /// The pose at coordinates 0, at the origin.
     pub fn rest<const JOINTS: usize>(&self) -> Pose<JOINTS> {
         let mut pose = Pose::identity();
         pose.rotations.iter_mut().zip(self.iter()).for_each(|(rotation, joint)| *rotation = joint.reference);
@@ -220,5 +219,42 @@ mod tests {
         rig.write(&source, &styled, &mut Drift::default(), &from, &mut out);
         assert!((out.rotations[2].angle() - 0.3).abs() < 1e-6);
         assert_eq!(out.root, from.root);
+    }
+
+    #[test]
+    fn a_leap_across_the_world_is_sound_and_bridged_by_the_drift() {
+        let reference = [[0.0, 0.0, 0.0, 1.0]; 3];
+        let rig = Rig::new(&KINDS, &AXES, &reference, &[[0.0; 3]; 3], Some(&[1.0, 0.0, 0.0])).unwrap();
+        let (mut source, mut pose) = (Frame::<4>::new(), Pose::<3>::identity());
+        for x in [-999_999.94, 999_999.94, -999_999.94] {
+            pose.root.x = x;
+            assert!(pose.is_sound(3));
+            rig.read(&pose, &mut source);
+            assert!(source.is_sound(), "{source:?}");
+        }
+        assert_eq!(source.leap, [-1_999_999.9, 0.0]);
+        source.leap[1] = 2_000_001.0;
+        assert!(!source.is_sound());
+        pose.root.x = -1e6;
+        assert!(!pose.is_sound(3), "nor is a pose that makes a frame that is not");
+    }
+
+    #[test]
+    fn joints_without_coordinates_are_shown_at_their_reference_and_written_as_the_source_has_them() {
+        let kinds = [JointKind::Hinge, JointKind::Fixed, JointKind::Slider].map(|kind| kind as u16);
+        let reference = [[0.0, 0.0, 0.0, 1.0], [0.0, 0.6, 0.0, 0.8], [0.6, 0.0, 0.0, 0.8]];
+        let rig = Rig::new(&kinds, &AXES, &reference, &[[0.0; 3]; 3], None).unwrap();
+        let frame = Frame::<1>::from_coordinates(&[0.3, 0.1, 0.0]);
+        let mut shown = Pose::<4>::identity();
+        shown.rotations[3] = UnitQuaternion::from_scaled_axis(Vector3::new(0.0, 0.0, 0.4));
+        let beyond = shown.rotations[3];
+        rig.show(&frame, &frame, &mut Drift::new(), &mut shown);
+        assert_eq!(shown.rotations[1..3], rig.rest::<4>().rotations[1..3]);
+        assert!((shown.rotations[0].angle() - 0.3).abs() < 1e-6);
+        assert_eq!(shown.rotations[3], beyond, "the rig does not have it");
+        let from = Pose::<4> { rotations: [beyond; 4], ..Pose::identity() };
+        let mut written = Pose::identity();
+        rig.write(&Frame::new(), &frame, &mut Drift::new(), &from, &mut written);
+        assert_eq!([written.rotations[1], written.rotations[3]], [beyond; 2]);
     }
 }

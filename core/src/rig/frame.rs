@@ -52,10 +52,11 @@ impl<const ROWS: usize> Frame<ROWS> {
     /// Numbers from here on are no coordinates.
     pub(crate) const LARGEST: f32 = 1e6;
 
-    /// True if every number is finite and below a million.
+    /// True if every number is finite and below a million. Both ends of a leap are, so it may be twice as far.
     pub fn is_sound(&self) -> bool {
-        let numbers = self.coordinates().iter().chain(&self.ground).chain(&self.leap);
-        numbers.into_iter().all(|x| x.abs() < Self::LARGEST) && self.heading.is_sound()
+        let mut numbers = self.coordinates().iter().chain(&self.ground);
+        let leaps = self.leap.iter().all(|x| x.abs() <= 2.0 * Self::LARGEST);
+        leaps && numbers.all(|x| x.abs() < Self::LARGEST) && self.heading.is_sound()
     }
 
     /// The next pose has not travelled: what it is farther on counts as a leap. The last leap is over.

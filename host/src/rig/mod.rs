@@ -194,8 +194,7 @@ impl Rig {
         styled.collect()
     }
 
-    /// The pose whose coordinates are 0: every joint at its reference, those without coordinates too, which
-    /// [`show`](DeviceRig::show) leaves alone.
+    /// The pose whose coordinates are 0: every joint at its reference.
     pub fn zero_pose(&self) -> Pose<MAX_JOINTS> {
         let mut pose = Pose::identity();
         for (to, joint) in pose.rotations.iter_mut().zip(self.joint_coordinates()) {

@@ -74,6 +74,8 @@ pub struct Watch {
     last: Frame<ROWS>,
     went: Steps,
     root: Option<Vector3<f32>>,
+    /// How far off the source was in the last frame, m.
+    ground: f32,
     /// Largest excess over a rate's step so far, rad or m.
     pub excess: f32,
 }
@@ -82,7 +84,7 @@ impl Watch {
     /// From a frame that stands still.
     pub fn new(frame: &Frame<ROWS>) -> Self {
         let went = Steps { coordinates: vec![0.0; 3 * ROWS], travel: Vector3::zeros(), turn: 0.0 };
-        Self { last: *frame, went, root: None, excess: 0.0 }
+        Self { last: *frame, went, root: None, ground: 0.0, excess: 0.0 }
     }
 
     /// Every bound of every coordinate in what goes out, after any input. Positions hold exactly; rates to rounding.
@@ -115,13 +117,14 @@ impl Watch {
     }
 
     /// The same of the pose: rotations of length one, and a root that goes as far as the frame's travel says, to the rounding of
-    /// where source and root are.
+    /// where source and root are and were.
     pub fn check_pose(&mut self, out: &Pose<JOINTS>, source: &Frame<ROWS>, what: &str) {
         for (joint, q) in out.rotations.iter().enumerate() {
             assert!((q.coords.norm() - 1.0).abs() < 1e-5, "{what}: joint {joint} {q}");
         }
         let ground = source.ground.iter().fold(0.0, |far: f32, x| far.max(x.abs()));
-        let rounding = 16.0 * f32::EPSILON * ground.max(out.root.norm()).max(1.0);
+        let far = ground.max(std::mem::replace(&mut self.ground, ground));
+        let rounding = 16.0 * f32::EPSILON * far.max(out.root.norm()).max(1.0);
         let rounding = rounding + self.root.map_or(0.0, |root| 16.0 * f32::EPSILON * root.norm());
         if let Some(root) = self.root.replace(out.root) {
             let step = Vector3::new(out.root.x - root.x, 0.0, out.root.z - root.z);
