@@ -181,7 +181,7 @@ fn use_everywhere(file: &PackFile, shown: &Shown) -> bool {
 #[test]
 fn changed_packs_are_refused_or_used_in_bounded_time_and_memory() {
     let cases: u64 = std::env::var("KINESIC_CAMPAIGN").map_or(270, |cases| cases.parse().unwrap());
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/packs/v1");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/packs/v2");
     let packs = NAMES.map(|name| Hostile::of(&PackFile::read(&folder.join(name)).unwrap()));
     let clip = walk(&Manner::NEUTRAL, 1.0, 60.0, 0.0, 1);
     let map = JointMap::detect(&clip.skeleton).unwrap();

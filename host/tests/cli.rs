@@ -169,7 +169,7 @@ fn every_training_writes_a_report_beside_its_pack() {
     let read = |name: &str| std::fs::read_to_string(at.join(name)).unwrap();
     succeed(&["train", "translate", "--pair", "neutral.bvh", "weary.bvh", "--out", "a.kin"], at);
     let page = read("a.report.html");
-    for part in ["doing nothing", "<svg", "polyline", "Translator::&lt;19", "neutral.bvh", "kinesic train translate"] {
+    for part in ["doing nothing", "<svg", "polyline", "Translator::&lt;", "neutral.bvh", "kinesic train translate"] {
         assert!(page.contains(part), "no {part} in the report of translate");
     }
     succeed(

@@ -112,7 +112,8 @@ enum Mirror {
 fn check_rate<'a>(fps: f64, clips: impl Iterator<Item = &'a Clip>) -> miette::Result<()> {
     let fastest = clips.map(Clip::fps).fold(60.0, f64::max);
     // Frame times are written with few digits.
-    if fps <= 1.01 * fastest {
+    // What is no rate at all is refused where clips are resampled.
+    if fps.is_nan() || fps <= 1.01 * fastest {
         return Ok(());
     }
     Err(miette!(
