@@ -11,7 +11,7 @@ use kinesic::model::ModelMeta;
 use kinesic_host::pack::PackFile;
 
 fn golden(name: &str) -> PackFile {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("packs/v1").join(name);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("packs/v2").join(name);
     PackFile::read(&path).unwrap_or_else(|error| panic!("{error}"))
 }
 
