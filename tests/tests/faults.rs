@@ -174,7 +174,7 @@ fn run(packs: &Packs, engine: &str, fault: Option<&(&str, usize, Fault)>) -> Run
     let mut watch = Watch::new(&at_limits(&state));
     let (mut out, mut last) = (Pose::identity(), first);
     let mut run = Vec::new();
-    let controls = state.clone();
+    let controls = state;
     let mut seen = 0;
     for frame in 0..FRAMES {
         let mut input = motion.next();

@@ -90,9 +90,13 @@ impl<'a> Problem<'a> {
         let coordinates = coordinates.min(self.basis.ncols());
         let basis = self.basis.subcols(0, coordinates);
         let drives = |s: &Sequence| centred(&s.input, &self.mean) * basis;
-        let dynamics = poles.bank(coordinates, self.main_frequency, self.fps).unwrap_or_default();
-        let all = self.sequences.iter().chain(self.mirrored);
-        let features = all.map(|s| with_states(&dynamics, drives(s))).collect();
+        let all = || self.sequences.iter().chain(self.mirrored);
+        let inputs: Vec<Mat<f64>> = all().map(drives).collect();
+        let dynamics = poles.bank(coordinates, self.main_frequency, self.fps).unwrap_or_else(|| {
+            let outputs: Vec<Mat<f64>> = all().map(|s| centred(&s.output, &vec![0.0; self.channels])).collect();
+            self.identified(&inputs, &outputs, poles)
+        });
+        let features = inputs.into_iter().map(|u| with_states(&dynamics, u)).collect();
         (dynamics, features)
     }
 
@@ -107,12 +111,18 @@ impl<'a> Problem<'a> {
         let inputs: Vec<Mat<f64>> = inputs.into_iter().map(|u| u * faer::Scale(scale)).collect();
         let dynamics = poles.bank(3, self.main_frequency, self.fps).unwrap_or_else(|| {
             let outputs: Vec<Mat<f64>> = all().map(|s| columns(&s.output, self.channels, joint, &[])).collect();
-            let covered: Vec<Range<usize>> = all().map(|s| s.covered.clone()).collect();
-            let Poles::Identified(order) = poles else { return Dynamics::default() };
-            identify::dynamics(&inputs, &outputs, &covered, order, self.fps)
+            self.identified(&inputs, &outputs, poles)
         });
         let features = inputs.into_iter().map(|u| with_states(&dynamics, u)).collect();
         (dynamics, scale, features)
+    }
+
+    /// Dynamics found from the data; those without states where `poles` says otherwise.
+    fn identified(&self, inputs: &[Mat<f64>], outputs: &[Mat<f64>], poles: Poles) -> Dynamics {
+        let Poles::Identified(order) = poles else { return Dynamics::default() };
+        let all = self.sequences.iter().chain(self.mirrored);
+        let covered: Vec<Range<usize>> = all.map(|s| s.covered.clone()).collect();
+        identify::dynamics(inputs, outputs, &covered, order, self.fps)
     }
 
     /// Moments of all frames, and for each fold those of the training and of the held-back frames.

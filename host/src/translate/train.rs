@@ -189,7 +189,7 @@ pub fn train_kept(
             error(&copies, "mirrored") < error(&[], "not mirrored")
         });
     let problem = Problem::new(rig, &sequences, if mirrored { &copies } else { &[] }, fps);
-    let grid = grid(options);
+    let grid = grid(rig, options);
     let errors = problem.validate(&grid, reached, "grid");
     let best_of = |keep: &dyn Fn(&Candidate) -> bool| {
         let kept = grid.iter().zip(&errors).filter(|(candidate, error)| keep(candidate) && error.is_finite());
@@ -288,7 +288,9 @@ fn aligned(
         let model = Problem::new(rig, sequences, &[], fps).fit(&QUICK, "").ok_or(TrainError::Undetermined)?;
         Ok::<_, TrainError>(pairs.iter().map(|pair| rig.positions(&simulate(&model, &pair.source))).collect::<Vec<_>>())
     };
-    for _ in 0..REALIGNMENTS {
+    // Evenly performed motions of a machine are on one clock: a warp would only hide how fast its servos react.
+    let one_clock = way == Alignment::Uniform && !rig.frames().travels();
+    for _ in 0..if one_clock { 0 } else { REALIGNMENTS } {
         let styled = quick(&current)?;
         current = sequences(&|index, pair| correspond_output(way, &styled[index], &pair.target, fps))?;
     }
@@ -333,7 +335,7 @@ fn plain_sequences(rig: &Rig, pairs: &[TrainPair]) -> Result<Vec<Sequence>, Trai
 }
 
 /// Everything that validation compares.
-fn grid(options: &TrainOptions) -> Vec<Candidate> {
+fn grid(rig: &Rig, options: &TrainOptions) -> Vec<Candidate> {
     let mut grid = Vec::new();
     let mut add = |coordinates: Option<usize>, poles: &[Poles], bases: &[Base], limit: usize| {
         for poles in poles.iter().filter(|p| p.states(coordinates.unwrap_or(3)) <= limit) {
@@ -353,7 +355,11 @@ fn grid(options: &TrainOptions) -> Vec<Candidate> {
     };
     if options.form != FormChoice::PerJoint {
         let limit = options.order.unwrap_or(WHOLE_BODY_ORDER);
-        let poles = [Poles::Static, Poles::Relaxation, Poles::Harmonics2, Poles::Harmonics3];
+        let mut poles = vec![Poles::Static, Poles::Relaxation, Poles::Harmonics2, Poles::Harmonics3];
+        if !rig.frames().travels() {
+            // A machine has no gait: its servos' own dynamics count, and there are few enough of them to find these from the data.
+            poles.extend([Poles::Identified(limit.min(24)), Poles::Identified(limit)]);
+        }
         for coordinates in [4, 8, 12] {
             add(Some(coordinates), &poles, &[Base::Mean, Base::Identity, Base::Channel, Base::Joint], limit);
         }
