@@ -17,7 +17,7 @@ pub struct Mix<T>(
 pub struct MixState<S, const COUNT: usize> {
     /// The engines' states, a tuple.
     pub engines: S,
-    /// Weight of each engine. One that is negative or not finite counts as 0.
+    /// Weight of each engine, 1e-6 to 1e6. One that is less, more or not finite counts as 0.
     pub weights: [f32; COUNT],
     /// Weight of the source frame. If no weight counts, the source passes.
     pub source: f32,
@@ -37,18 +37,24 @@ struct Sum<const ROWS: usize> {
 
 impl<const ROWS: usize> Sum<ROWS> {
     fn add(&mut self, frame: &Frame<ROWS>, weight: f32) {
-        let weight = if (0.0..1e6).contains(&weight) { weight } else { 0.0 };
+        // Single precision has room for the sum, and for one over it.
+        let weight = if (1e-6..1e6).contains(&weight) { weight } else { 0.0 };
         self.total += weight;
         for (sum, x) in self.rows.as_flattened_mut().iter_mut().zip(frame.coordinates()) {
             *sum += weight * x;
         }
     }
 
+    /// Nothing changes where no weight counts, nor where rounding takes the mean beyond what is [sound](Frame::is_sound).
     fn mean(self, frame: &mut Frame<ROWS>) {
         if self.total > 0.0 {
             let share = 1.0 / self.total;
-            let coordinates = frame.coordinates_mut().iter_mut().zip(self.rows.as_flattened());
-            coordinates.for_each(|(x, sum)| *x = sum * share);
+            for (x, sum) in frame.coordinates_mut().iter_mut().zip(self.rows.as_flattened()) {
+                let mean = sum * share;
+                if mean.abs() < Frame::<ROWS>::LARGEST {
+                    *x = mean;
+                }
+            }
         }
     }
 }
@@ -138,5 +144,20 @@ mod tests {
         assert_eq!((frame.rows[0][0], state), (3.0, (1, 1, 0)));
         chain.idle(&mut state, &mut frame);
         assert_eq!((frame.rows[0][0], state), (3.0, (1, 1, 0)));
+    }
+
+    #[test]
+    fn a_mean_of_sound_frames_is_sound_whatever_the_weights() {
+        let mix = Mix((Add(0.0), Add(0.0)));
+        for weight in [1e-45, 1e-40, 1e-38, 1e-7, 1e-6, 0.1, 0.3, 7.0, 999_999.0, 1e6, 3e38, f32::INFINITY] {
+            for x in [0.5, -999_999.94, 999_999.94] {
+                let mut state =
+                    MixState { weights: [weight, 0.3 * weight], source: 1e-3 * weight, ..MixState::default() };
+                let mut frame = Frame::<1>::from_coordinates(&[x; 3]);
+                mix.step(&mut state, &mut frame);
+                assert!(frame.is_sound(), "{weight}, {x}: {:?}", frame.rows);
+                assert!((frame.rows[0][0] - x).abs() < 1e-6 * x.abs(), "{weight}, {x}: {:?}", frame.rows);
+            }
+        }
     }
 }
