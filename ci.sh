@@ -55,7 +55,7 @@ step() {
     done < <({
         sed -nE 's/^    `(-p .*)`$/cargo test --release --locked \1/p' "$log" | sed "s/\$/${repeat_with:-}/"
         sed -nE 's/^FAILED: ([a-z0-9]+), ([a-z0-9-]+): .*/cargo run --release --locked -p kinesic-firmware-sim -- check --target \1 --workload \2/p' "$log" | sort -u
-    } | grep . || echo "$*")
+    } | grep . || echo "${repeat_as:-$*}")
 }
 
 # Prints what failed, and returns 1 if anything did.
@@ -99,7 +99,8 @@ bare_metal=(thumbv6m-none-eabi thumbv7em-none-eabihf thumbv8m.main-none-eabihf r
 fetch() {
     local workspace
     for workspace in . "${others[@]}"; do
-        step "fetch: crates of $workspace" fetch_one "$workspace"
+        repeat_as="cargo fetch --locked --manifest-path $workspace/Cargo.toml" \
+            step "fetch: crates of $workspace" fetch_one "$workspace"
     done
 }
 
