@@ -28,7 +28,7 @@ pub fn line(text: &str) -> Cow<'_, str> {
     shown(text, &[], |c| c.escape_unicode().to_string())
 }
 
-/// Text of several lines: as [`line`], with line ends and tabs as they are.
+/// Text of several lines: as [`line()`], with line ends and tabs as they are.
 pub fn text(text: &str) -> Cow<'_, str> {
     shown(text, &['\n', '\t'], |c| c.escape_unicode().to_string())
 }

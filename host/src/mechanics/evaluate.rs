@@ -65,7 +65,7 @@ pub struct Report {
     pub expressive_deg: f64,
     /// Joints that move in these clips, all but the hips: the means are over them. 0: nothing was measured.
     pub moving_joints: usize,
-    /// [`STATED`].
+    /// Figures of this report that are the pack's own.
     pub as_the_pack_states: [&'static str; 3],
     /// The three over all joints, with distances: means of the clips.
     pub distances: Distances,
