@@ -67,7 +67,7 @@ type Results = BTreeMap<(String, String), Value>;
 fn measure(data: &Data, selection: Selection, progress: &(dyn Fn(&str) + Sync)) -> Result<Results, CheckError> {
     // Through text, as the earlier ones: serde_json's reading of a number may differ from it in the last digit.
     let text = report::json(data, &check(data, &selection, progress)?).to_string();
-    Ok(serde_json::from_str(&text).ok().as_ref().and_then(results).unwrap_or_default())
+    Ok(serde_json::from_str(&text).ok().as_ref().and_then(results).expect("a check has results"))
 }
 
 /// The results by workload and target; `None` where there are none.

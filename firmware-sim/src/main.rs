@@ -43,7 +43,7 @@ enum Command {
         #[arg(long, value_name = "PERCENT")]
         suggest: Option<f64>,
         /// Runs a sample of an earlier check again, from the file that its --json wrote; exit 1 where a digit differs.
-        #[arg(long, value_name = "FILE", conflicts_with_all = ["target", "workload", "json", "suggest"])]
+        #[arg(long, value_name = "FILE", conflicts_with_all = ["target", "workload", "json", "suggest", "hot"])]
         again: Option<PathBuf>,
         /// Any text, such as a commit: it decides which of the earlier results are in the sample.
         #[arg(long, value_name = "TEXT", default_value = "", requires = "again")]

@@ -16,7 +16,7 @@ fn read(path: &str) -> String {
     std::fs::read_to_string(repository().join(path)).unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 
-/// Platforms that each workspace is built for, the host's first: `ci.sh` fetches the crates of the same ones.
+/// Platforms that a workspace is built for beside the host's: `ci.sh` fetches the crates of the same ones.
 fn platforms(workspace: &str) -> Vec<&'static str> {
     let bare_metal =
         ["thumbv6m-none-eabi", "thumbv7em-none-eabihf", "thumbv8m.main-none-eabihf", "riscv32imc-unknown-none-elf"];
