@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The tables of docs/emotion.md. Label tables are made from the data's manifest.tsv into a temporary folder; motions, if wanted, go to
 # the folder EMOTION_MOTIONS, which must lie outside the repository: they are made from other people's clips.
-# usage: docs/emotion.sh [accuracy|blends|keyframes|synthesis|units|mix|playback]...   (default: all)
+# usage: docs/emotion.sh [accuracy|blends|keyframes|synthesis|units|mix|turns|playback]...   (default: all)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 data=$(realpath "${KINESIC_DATA:-../shared/data}")
@@ -59,7 +59,7 @@ motions=${EMOTION_MOTIONS:-$work}
 "$kinesic" train emotion --labels "$work/walk-all.tsv" --attribute angry --attribute sad --hold-out 0 \
     --out "$motions/blends.kin" >"$work/blends.txt"
 
-for table in "${@:-accuracy blends keyframes synthesis units mix playback}"; do
+for table in "${@:-accuracy blends keyframes synthesis units mix turns playback}"; do
     for table in $table; do
         echo "== $table"
         case $table in
@@ -113,6 +113,14 @@ for table in "${@:-accuracy blends keyframes synthesis units mix playback}"; do
             "$kinesic" train emotion --labels "$work/bandai1-walk.tsv" --order 'happy>normal>sad' \
                 --order 'anger:angry>normal=happy=sad' --hold-out 0 --out "$motions/two.kin" >/dev/null
             "$bench" mix "$motions/two.kin"
+            ;;
+        turns)
+            "$bench" turns "$motions/anger.kin" "$work/bandai1-walk.tsv" 'anger:angry>normal>sad'
+            for action in walk raise-up-both-hands wave-left-hand; do
+                "$kinesic" train emotion --labels "$work/bandai2-$action.tsv" --order 'active>normal>exhausted' --hold-out 0 \
+                    --out "$motions/$action.kin" >/dev/null
+                "$bench" turns "$motions/$action.kin" "$work/bandai2-$action.tsv" 'active>normal>exhausted'
+            done
             ;;
         playback)
             for action in walk raise-up-both-hands wave-left-hand; do

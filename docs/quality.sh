@@ -11,6 +11,12 @@ trap 'rm -rf "$work"' EXIT
 
 # First occurrence of a number in the JSON of the command: the mean over the pairs.
 value() { grep -m1 "\"$2\":" "$1" | tr -dc '0-9.-'; }
+# angle FILE WHO WHAT: the first mean angle of WHO (error, identity, offset, affine) over WHAT (all, leaves), closed ends.
+angle() {
+    awk -v who="\"$2\": {" -v what="\"$3\":" \
+        '/"degrees": \{/ { in_degrees = 1 } in_degrees && index($0, who) { in_who = 1 }
+         in_who && index($0, what) { gsub(/[^0-9.-]/, ""); print; exit }' "$1"
+}
 word() { grep -m1 "\"$2\":" "$1" | cut -d'"' -f4; }
 number() { printf ' %.1f |' "$(value "$1" "$2")"; }
 
@@ -20,7 +26,7 @@ end_record() { echo >>"$work/all"; }
 
 # xia TAKE_TO_TRAIN TAKE_TO_TEST
 xia() {
-    local clips=$data/xia style form options
+    local clips=$data/xia style form options who what
     echo
     echo "Trained on take $1, tested on take $2; closed ends, cm"
     echo
@@ -46,6 +52,10 @@ xia() {
         record "$work/auto" open_identity_cm open_offset_cm open_affine_cm open_error_cm
         record "$work/in-step" error_cm open_error_cm
         record "$work/floor" open_identity_cm
+        for what in all leaves; do
+            for who in identity offset affine error; do printf '%s ' "$(angle "$work/auto" $who $what)" >>"$work/all"; done
+            printf '%s ' "$(angle "$work/floor" identity $what)" >>"$work/all"
+        done
         end_record
         printf '| %s |' "$style"
         for key in identity_cm offset_cm affine_cm; do number "$work/auto" $key; done
@@ -62,6 +72,10 @@ xia() {
             print "| ends | identity | offset | affine | chosen | `--align in-step` | floor |\n|---|---|---|---|---|---|---|"
             printf "| closed | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f |\n", sum[1], sum[2], sum[3], sum[6], sum[12], sum[7]
             printf "| open | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f |\n", sum[8], sum[9], sum[10], sum[11], sum[13], sum[14]
+            print "\nMean angle of a joint to its target over the 7 styles, closed ends, degrees\n"
+            print "| joints | identity | offset | affine | chosen | floor |\n|---|---|---|---|---|---|"
+            printf "| all | %.2f | %.2f | %.2f | **%.2f** | %.2f |\n", sum[15], sum[16], sum[17], sum[18], sum[19]
+            printf "| leaves: head, hands, toes | %.2f | %.2f | %.2f | **%.2f** | %.2f |\n", sum[20], sum[21], sum[22], sum[23], sum[24]
         }' "$work/all"
 }
 

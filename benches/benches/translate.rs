@@ -5,11 +5,11 @@ use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use kinesic::kernel::{JointBlock, advance_joint};
-use kinesic::{Pose, TranslatorState};
+use kinesic::{Pipeline, PipelineState, Pose};
 use kinesic_host::clip::JointMap;
 use kinesic_host::gait::{Manner, walk};
 use kinesic_host::pack::{PackFile, Provenance};
-use kinesic_host::rig::Rig;
+use kinesic_host::rig::{MAX_ROWS, Rig};
 use kinesic_host::translate::{FormChoice, HostTranslator, TrainOptions, TrainPair, train};
 use nalgebra::{SMatrix, SVector};
 
@@ -43,7 +43,7 @@ fn recursion(c: &mut Criterion) {
     group.finish();
 }
 
-/// A frame of a 19-joint walk with kinematics, in both forms.
+/// A frame of a 19-joint walk from pose to pose, in both forms.
 fn step(c: &mut Criterion) {
     let mut group = c.benchmark_group("translator, 19 joints");
     let (neutral, weary) = (walk(&Manner::NEUTRAL, 4.0, 60.0, 0.0, 1), walk(&Manner::WEARY, 5.0, 60.0, 0.0, 2));
@@ -61,12 +61,12 @@ fn step(c: &mut Criterion) {
         let trained = train(&rig, std::slice::from_ref(&pair), "weary", 60.0, &options, &|_| {}).expect("trains");
         let file = PackFile::from_bytes(&trained.model.pack(&rig, &Provenance::default()));
         let pack = file.pack().expect("loads");
-        let translator = HostTranslator::load(&pack).expect("loads");
-        let mut state = Box::new(TranslatorState::new());
+        let pipeline = Pipeline::<HostTranslator, MAX_ROWS>::load(&pack).expect("loads");
+        let mut state = Box::new(PipelineState::new());
         let mut styled = Pose::identity();
         let mut frames = poses.iter().cycle();
         group.bench_function(name, |b| {
-            b.iter(|| translator.step(&mut state, frames.next().expect("cycles"), &mut styled));
+            b.iter(|| pipeline.step(&mut state, frames.next(), &mut styled));
         });
     }
     group.finish();

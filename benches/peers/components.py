@@ -211,17 +211,14 @@ def learn():
     import torch
     torch.set_num_threads(1)
     load = lambda n: torch.tensor(np.loadtxt(os.path.join(work, n + ".csv"), delimiter=",", ndmin=2), dtype=torch.float32)
-    W, CC, G, start, mean, table = map(load, ("weights", "content", "gram", "start", "mean", "bones"))
-    parent, child, rest = table[:, 0].long(), table[:, 1].long(), table[:, 2]
+    CC, G, start = map(load, ("content", "gram", "start"))
 
     def run():
         C = start.clone().requires_grad_(True)
         adam = torch.optim.Adam([C], lr=0.1)
         for _ in range(500):
             adam.zero_grad()
-            P = (mean + W @ C).view(W.shape[0], -1, 3)
-            length = (P[:, child] - P[:, parent]).norm(dim=2)
-            value = ((CC - C) ** 2).sum() + 0.01 * ((C.T @ C - G) ** 2).sum() + 10 * ((length - rest) ** 2).sum() / W.shape[0]
+            value = ((CC - C) ** 2).sum() + 0.01 * ((C.T @ C - G) ** 2).sum()
             value.backward()
             adam.step()
         return float(value.detach())

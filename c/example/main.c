@@ -59,12 +59,17 @@ int main(void)
     }
     kinesic_translator_state(&state);
     kinesic_translator_set_strength(&state, 0.8f);
-    kinesic_translator_set_weight(&state, 12, 0.5f);
+    kinesic_translator_set_weight(&model, &state, 12, 0.5f);
+    kinesic_pose_rest(&styled);
     read_pose(0);
     kinesic_translator_start(&model, &state, &source);
     for (uint32_t frame = 0; frame < 180; frame++) {
         read_pose(frame);
-        kinesic_translator_step(&model, &state, &source, &styled);
+        /* A frame that is garbled, and four that do not come: the filters never see them, what was shown last is held. */
+        if (frame == 89)
+            source.rotations[5][3] = __builtin_nanf("");
+        const KinesicPose *came = frame >= 118 && frame < 122 ? 0 : &source;
+        kinesic_translator_step(&model, &state, came, &styled);
         if (frame % 30 == 29)
             report(frame, hash(&styled));
     }

@@ -15,6 +15,11 @@
 #define KINESIC_JOINTS 32
 
 /**
+ * Rows of coordinates, three to a row: that of the root, and one per joint.
+ */
+#define KINESIC_ROWS 33
+
+/**
  * Filter states of a translator, and its principal coordinates.
  */
 #define KINESIC_STATES 1280
@@ -91,7 +96,7 @@ typedef struct {
  * What running components remember.
  */
 typedef struct {
-  size_t words[48];
+  size_t words[344];
 } KinesicComponentsState;
 
 /**
@@ -120,8 +125,22 @@ typedef struct {
  * What running body mechanics remember.
  */
 typedef struct {
-  size_t words[288];
+  size_t words[560];
 } KinesicMechanicsState;
+
+/**
+ * The loaded engines of a pack: translator, style components and joint limits, in this order. They borrow the pack.
+ */
+typedef struct {
+  size_t words[192];
+} KinesicPipeline;
+
+/**
+ * What a running pipeline remembers.
+ */
+typedef struct {
+  size_t words[2240];
+} KinesicPipelineState;
 
 /**
  * A loaded translator. It borrows the pack.
@@ -134,7 +153,7 @@ typedef struct {
  * What a running translator remembers: all the RAM that there is.
  */
 typedef struct {
-  size_t words[1344];
+  size_t words[1616];
 } KinesicTranslatorState;
 
 #ifdef __cplusplus
@@ -160,7 +179,8 @@ KinesicStatus kinesic_components_load(KinesicComponents *model,
 void kinesic_components_state(KinesicComponentsState *state);
 
 /**
- * Restyles one live frame, `source` in, `styled` out; with a null `source`, plays the next frame of the stored motion.
+ * Restyles one live frame: `source` in, `styled` out. A null or garbled `source` is a frame that did not come: the last one is held.
+ * `styled` is a pose of its own that keeps what went out before; `kinesic_pose_rest` makes the first.
  *
  * # Safety
  * `model` was loaded, `state` was made, the poses are valid; or null.
@@ -171,12 +191,33 @@ void kinesic_components_step(const KinesicComponents *model,
                              KinesicPose *styled);
 
 /**
+ * Plays the next frame of the stored motion; after the last frame the first.
+ *
+ * # Safety
+ * `model` was loaded, `state` was made, the pose is valid; or null.
+ */
+void kinesic_components_step_stored(const KinesicComponents *model,
+                                    KinesicComponentsState *state,
+                                    KinesicPose *styled);
+
+/**
  * Strength from now on: 0 = the source, 1 = as learned, beyond = exaggerated.
  *
  * # Safety
  * `state` was made, or is null.
  */
 void kinesic_components_set_strength(KinesicComponentsState *state, float strength);
+
+/**
+ * Weight of a joint from now on: 0 = untouched, 1 = restyled. A joint that the pack does not have is ignored.
+ *
+ * # Safety
+ * `model` was loaded, `state` was made; or null.
+ */
+void kinesic_components_set_weight(const KinesicComponents *model,
+                                   KinesicComponentsState *state,
+                                   size_t joint,
+                                   float weight);
 
 /**
  * Loads the body mechanics of a pack, with every check that makes stepping infallible.
@@ -197,7 +238,8 @@ KinesicStatus kinesic_mechanics_load(KinesicMechanics *model,
 void kinesic_mechanics_state(KinesicMechanicsState *state);
 
 /**
- * One frame with more or less expression: `amount` 0 = none, 1 = as observed, 2 = twice.
+ * One frame with more or less expression: `amount` 0 = none, 1 = as observed, 2 = twice. A null or garbled `source` is a frame that
+ * did not come: the last one is held. `out` is a pose of its own that keeps what went out before; `kinesic_pose_rest` makes the first.
  *
  * # Safety
  * `model` was loaded, `state` was made, the poses are valid; or null.
@@ -207,6 +249,94 @@ void kinesic_mechanics_modulate(const KinesicMechanics *model,
                                 const KinesicPose *source,
                                 float amount,
                                 KinesicPose *out);
+
+/**
+ * Weight of a joint from now on: 0 = as observed, 1 = the whole amount. A joint past the capacity is ignored.
+ *
+ * # Safety
+ * `state` was made, or is null.
+ */
+void kinesic_mechanics_set_weight(KinesicMechanicsState *state,
+                                  size_t joint,
+                                  float weight);
+
+/**
+ * Loads the engines of a pack, with every check that makes stepping infallible. A pack needs one of the three.
+ *
+ * # Safety
+ * `pack` is null or valid for `len` bytes for as long as the model is used; `model` is null or valid.
+ */
+KinesicStatus kinesic_pipeline_load(KinesicPipeline *model,
+                                    const uint8_t *pack,
+                                    size_t len);
+
+/**
+ * Makes a new state: nothing seen yet, strengths 1, all joints; limits begin at rest.
+ *
+ * # Safety
+ * `state` is null or valid.
+ */
+void kinesic_pipeline_state(KinesicPipelineState *state);
+
+/**
+ * Puts everything where it would be had this pose always been held.
+ *
+ * # Safety
+ * `model` was loaded, `state` was made, `source` is valid; or null.
+ */
+void kinesic_pipeline_start(const KinesicPipeline *model,
+                            KinesicPipelineState *state,
+                            const KinesicPose *source);
+
+/**
+ * One frame: `source` in, `out` out. A null or garbled `source` is a frame that did not come: limits brake, hold and go to rest,
+ * everything else is held. `out` is a pose of its own that keeps what went out before; `kinesic_pose_rest` makes the first.
+ *
+ * # Safety
+ * `model` was loaded, `state` was made, the poses are valid; or null.
+ */
+void kinesic_pipeline_step(const KinesicPipeline *model,
+                           KinesicPipelineState *state,
+                           const KinesicPose *source,
+                           KinesicPose *out);
+
+/**
+ * One frame of coordinates in order, rad or m: servo positions in and out, without any rotation. A null or garbled `source` is a
+ * frame that did not come. `kinesic_pipeline_coordinates` says how many there are; those past the end of an array are left out.
+ *
+ * # Safety
+ * `model` was loaded, `state` was made, `source` and `out` are valid for `len` floats; or null.
+ */
+void kinesic_pipeline_step_coordinates(const KinesicPipeline *model,
+                                       KinesicPipelineState *state,
+                                       const float *source,
+                                       float *out,
+                                       size_t len);
+
+/**
+ * Coordinates of a loaded pack, what rows leave free included; 0 for a null model.
+ *
+ * # Safety
+ * `model` was loaded, or is null.
+ */
+size_t kinesic_pipeline_coordinates(const KinesicPipeline *model);
+
+/**
+ * Strength of translator and components from now on: 0 = the source, 1 = as learned, beyond = exaggerated.
+ *
+ * # Safety
+ * `state` was made, or is null.
+ */
+void kinesic_pipeline_set_strength(KinesicPipelineState *state,
+                                   float strength);
+
+/**
+ * Frames that did not come or were garbled since the last sound one; 0 for a null state.
+ *
+ * # Safety
+ * `state` was made, or is null.
+ */
+uint32_t kinesic_pipeline_gap(const KinesicPipelineState *state);
 
 /**
  * Makes the rest pose: all rotations the identity, the root at the origin.
@@ -243,7 +373,7 @@ float kinesic_frame_rate(const uint8_t *pack, size_t len);
 void kinesic_translator_state(KinesicTranslatorState *state);
 
 /**
- * Puts the filters where holding this pose for ever would have brought them, so that the first half second does not ease in.
+ * Initialises the filters to their steady state for this pose, so that the first half second does not ease in.
  *
  * # Safety
  * `model` was loaded, `state` was made, `source` is valid; or null.
@@ -253,7 +383,8 @@ void kinesic_translator_start(const KinesicTranslator *model,
                               const KinesicPose *source);
 
 /**
- * Translates one frame: `source` in, `styled` out; they may be the same pose.
+ * Translates one frame: `source` in, `styled` out. A null or garbled `source` is a frame that did not come: the last one is held.
+ * `styled` is a pose of its own that keeps what went out before; `kinesic_pose_rest` makes the first.
  *
  * # Safety
  * `model` was loaded, `state` was made, the poses are valid; or null.
@@ -272,12 +403,13 @@ void kinesic_translator_step(const KinesicTranslator *model,
 void kinesic_translator_set_strength(KinesicTranslatorState *state, float strength);
 
 /**
- * Weight of a joint from now on: 0 = untouched, 1 = translated. A joint past the capacity is ignored.
+ * Weight of a joint from now on: 0 = untouched, 1 = translated. A joint that the pack does not have is ignored.
  *
  * # Safety
- * `state` was made, or is null.
+ * `model` was loaded, `state` was made; or null.
  */
-void kinesic_translator_set_weight(KinesicTranslatorState *state,
+void kinesic_translator_set_weight(const KinesicTranslator *model,
+                                   KinesicTranslatorState *state,
                                    size_t joint,
                                    float weight);
 

@@ -2,13 +2,14 @@
 
 use core::mem::MaybeUninit;
 
-use kinesic::{Components, ComponentsState, Pack, Pose};
+use kinesic::rig::Drift;
+use kinesic::{Components, Frame};
 
+use crate::playing::{self, Playing, State};
 use crate::storage;
-use crate::{KINESIC_COMPONENTS, KINESIC_JOINTS, KinesicPose, KinesicStatus};
+use crate::{KINESIC_COMPONENTS, KINESIC_ROWS, KinesicPose, KinesicStatus};
 
-type Model = Components<'static, KINESIC_JOINTS, KINESIC_COMPONENTS>;
-type State = ComponentsState<KINESIC_JOINTS>;
+type Engine = Components<'static, KINESIC_ROWS, KINESIC_COMPONENTS>;
 
 /// Loaded style components. They borrow the pack.
 #[repr(C)]
@@ -19,7 +20,7 @@ pub struct KinesicComponents {
 /// What running components remember.
 #[repr(C)]
 pub struct KinesicComponentsState {
-    words: [MaybeUninit<usize>; 48],
+    words: [MaybeUninit<usize>; 344],
 }
 
 /// Loads the style components of a pack, with every check that makes stepping infallible.
@@ -33,13 +34,7 @@ pub unsafe extern "C" fn kinesic_components_load(
     len: usize,
 ) -> KinesicStatus {
     // SAFETY: by the caller's promise.
-    let Some(bytes) = (unsafe { storage::bytes(pack, len) }) else { return KinesicStatus::Null };
-    match Pack::load(bytes).and_then(|pack| Model::load(&pack)) {
-        // SAFETY: by the caller's promise.
-        Ok(loaded) if unsafe { storage::put(model, loaded) } => KinesicStatus::Ok,
-        Ok(_) => KinesicStatus::Null,
-        Err(error) => error.into(),
-    }
+    unsafe { playing::load::<_, Engine>(model, pack, len, |_| true) }
 }
 
 /// Makes a new state: at the origin, facing +Z, strength 1, all joints.
@@ -49,10 +44,11 @@ pub unsafe extern "C" fn kinesic_components_load(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn kinesic_components_state(state: *mut KinesicComponentsState) {
     // SAFETY: by the caller's promise.
-    unsafe { storage::put(state, State::new()) };
+    unsafe { playing::new::<_, Engine>(state) };
 }
 
-/// Restyles one live frame, `source` in, `styled` out; with a null `source`, plays the next frame of the stored motion.
+/// Restyles one live frame: `source` in, `styled` out. A null or garbled `source` is a frame that did not come: the last one is held.
+/// `styled` is a pose of its own that keeps what went out before; `kinesic_pose_rest` makes the first.
 ///
 /// # Safety
 /// `model` was loaded, `state` was made, the poses are valid; or null.
@@ -63,19 +59,29 @@ pub unsafe extern "C" fn kinesic_components_step(
     source: *const KinesicPose,
     styled: *mut KinesicPose,
 ) {
-    // SAFETY: by the caller's promise; the source is copied before the result is written.
-    let parts =
-        unsafe { (storage::get::<_, Model>(model), storage::get_mut::<_, State>(state), source.as_ref().copied()) };
-    if let (Some(model), Some(state), source) = parts {
-        let mut out = Pose::identity();
-        match source {
-            Some(source) => model.step(state, &source.to_core(), &mut out),
-            None => model.step_stored(state, &mut out),
-        }
-        // SAFETY: by the caller's promise.
-        if let Some(styled) = unsafe { styled.as_mut() } {
-            styled.set(&out);
-        }
+    // SAFETY: by the caller's promise.
+    unsafe { playing::step::<_, _, Engine>(model, state, source, styled) };
+}
+
+/// Plays the next frame of the stored motion; after the last frame the first.
+///
+/// # Safety
+/// `model` was loaded, `state` was made, the pose is valid; or null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn kinesic_components_step_stored(
+    model: *const KinesicComponents,
+    state: *mut KinesicComponentsState,
+    styled: *mut KinesicPose,
+) {
+    // SAFETY: by the caller's promise.
+    let parts = unsafe {
+        (storage::get::<_, Playing<Engine>>(model), storage::get_mut::<_, State<Engine>>(state), styled.as_mut())
+    };
+    if let (Some(model), Some(state), Some(styled)) = parts {
+        let (mut frame, mut pose) = (Frame::new(), model.rig().rest());
+        model.engine.step_stored(&mut state.engine, &mut frame);
+        model.rig().show(&frame, &frame, &mut Drift::new(), &mut pose);
+        styled.set(&pose);
     }
 }
 
@@ -86,7 +92,22 @@ pub unsafe extern "C" fn kinesic_components_step(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn kinesic_components_set_strength(state: *mut KinesicComponentsState, strength: f32) {
     // SAFETY: by the caller's promise.
-    if let Some(state) = unsafe { storage::get_mut::<_, State>(state) } {
-        state.controls.strength = strength;
+    if let Some(state) = unsafe { storage::get_mut::<_, State<Engine>>(state) } {
+        state.engine.controls.strength = strength;
     }
+}
+
+/// Weight of a joint from now on: 0 = untouched, 1 = restyled. A joint that the pack does not have is ignored.
+///
+/// # Safety
+/// `model` was loaded, `state` was made; or null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn kinesic_components_set_weight(
+    model: *const KinesicComponents,
+    state: *mut KinesicComponentsState,
+    joint: usize,
+    weight: f32,
+) {
+    // SAFETY: by the caller's promise.
+    unsafe { playing::set_weight::<_, _, Engine>(model, state, joint, weight, |state| &mut state.controls) };
 }

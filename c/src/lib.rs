@@ -7,6 +7,8 @@
 
 mod components;
 mod mechanics;
+mod pipeline;
+mod playing;
 mod pose;
 mod status;
 mod storage;
@@ -14,12 +16,15 @@ mod translator;
 
 pub use components::*;
 pub use mechanics::*;
+pub use pipeline::*;
 pub use pose::*;
 pub use status::*;
 pub use translator::*;
 
 /// Joints that a pose holds; a pack with more is refused.
 pub const KINESIC_JOINTS: usize = 32;
+/// Rows of coordinates, three to a row: that of the root, and one per joint.
+pub const KINESIC_ROWS: usize = 33;
 /// Filter states of a translator, and its principal coordinates.
 pub const KINESIC_STATES: usize = 1280;
 /// Style components.

@@ -2,14 +2,13 @@
 
 use core::mem::MaybeUninit;
 
-use kinesic::mechanics::{Decoupled, Modulation, modulate};
-use kinesic::{BodyMechanics, MechanicsState, Pack, Pose};
+use kinesic::mechanics::Expression;
 
+use crate::playing::{self, State};
 use crate::storage;
 use crate::{KINESIC_JOINTS, KINESIC_UNITS, KINESIC_WINDOW, KinesicPose, KinesicStatus};
 
-type Model = BodyMechanics<'static, KINESIC_JOINTS, KINESIC_UNITS, KINESIC_WINDOW>;
-type State = MechanicsState<KINESIC_JOINTS, KINESIC_WINDOW>;
+type Engine = Expression<'static, KINESIC_JOINTS, KINESIC_UNITS, KINESIC_WINDOW>;
 
 /// Loaded body mechanics. They borrow the pack.
 #[repr(C)]
@@ -20,7 +19,7 @@ pub struct KinesicMechanics {
 /// What running body mechanics remember.
 #[repr(C)]
 pub struct KinesicMechanicsState {
-    words: [MaybeUninit<usize>; 288],
+    words: [MaybeUninit<usize>; 560],
 }
 
 /// Loads the body mechanics of a pack, with every check that makes stepping infallible.
@@ -34,13 +33,7 @@ pub unsafe extern "C" fn kinesic_mechanics_load(
     len: usize,
 ) -> KinesicStatus {
     // SAFETY: by the caller's promise.
-    let Some(bytes) = (unsafe { storage::bytes(pack, len) }) else { return KinesicStatus::Null };
-    match Pack::load(bytes).and_then(|pack| Model::load(&pack)) {
-        // SAFETY: by the caller's promise.
-        Ok(loaded) if unsafe { storage::put(model, loaded) } => KinesicStatus::Ok,
-        Ok(_) => KinesicStatus::Null,
-        Err(error) => error.into(),
-    }
+    unsafe { playing::load::<_, Engine>(model, pack, len, |_| true) }
 }
 
 /// Makes a new state: nothing seen yet.
@@ -50,10 +43,11 @@ pub unsafe extern "C" fn kinesic_mechanics_load(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn kinesic_mechanics_state(state: *mut KinesicMechanicsState) {
     // SAFETY: by the caller's promise.
-    unsafe { storage::put(state, State::new()) };
+    unsafe { playing::new::<_, Engine>(state) };
 }
 
-/// One frame with more or less expression: `amount` 0 = none, 1 = as observed, 2 = twice.
+/// One frame with more or less expression: `amount` 0 = none, 1 = as observed, 2 = twice. A null or garbled `source` is a frame that
+/// did not come: the last one is held. `out` is a pose of its own that keeps what went out before; `kinesic_pose_rest` makes the first.
 ///
 /// # Safety
 /// `model` was loaded, `state` was made, the poses are valid; or null.
@@ -65,17 +59,24 @@ pub unsafe extern "C" fn kinesic_mechanics_modulate(
     amount: f32,
     out: *mut KinesicPose,
 ) {
-    // SAFETY: by the caller's promise; the source is copied before the result is written.
-    let parts =
-        unsafe { (storage::get::<_, Model>(model), storage::get_mut::<_, State>(state), source.as_ref().copied()) };
-    if let (Some(model), Some(state), Some(source)) = parts {
-        let mut parts = Decoupled::identity();
-        model.step(state, &source.to_core(), &mut parts);
-        let mut modulated = Pose::identity();
-        modulate(state.pose(), &parts, &Modulation { amount, ..Modulation::default() }, &mut modulated);
-        // SAFETY: by the caller's promise.
-        if let Some(out) = unsafe { out.as_mut() } {
-            out.set(&modulated);
+    // SAFETY: by the caller's promise; the first borrow ends before the second begins.
+    unsafe {
+        if let Some(state) = storage::get_mut::<_, State<Engine>>(state) {
+            state.engine.modulation.amount = amount;
         }
+        playing::step::<_, _, Engine>(model, state, source, out);
+    }
+}
+
+/// Weight of a joint from now on: 0 = as observed, 1 = the whole amount. A joint past the capacity is ignored.
+///
+/// # Safety
+/// `state` was made, or is null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn kinesic_mechanics_set_weight(state: *mut KinesicMechanicsState, joint: usize, weight: f32) {
+    // SAFETY: by the caller's promise.
+    let state = unsafe { storage::get_mut::<_, State<Engine>>(state) };
+    if let Some(to) = state.and_then(|state| state.engine.modulation.mask.get_mut(joint)) {
+        *to = weight;
     }
 }

@@ -39,6 +39,28 @@ pub unsafe fn get_mut<'s, S, T: Copy>(storage: *mut S) -> Option<&'s mut T> {
 /// # Safety
 /// `bytes` is null, or valid for reads of `len` bytes for as long as the model lives.
 pub unsafe fn bytes<'s>(bytes: *const u8, len: usize) -> Option<&'s [u8]> {
+    // SAFETY: by the caller's promise.
+    unsafe { slice(bytes, len) }
+}
+
+/// An array of the caller's, if there is one.
+///
+/// # Safety
+/// `array` is null, or valid for reads of `len` elements for as long as the slice lives.
+pub unsafe fn slice<'s, T>(array: *const T, len: usize) -> Option<&'s [T]> {
     // SAFETY: by the caller's promise; a slice must not reach half the address space.
-    (!bytes.is_null() && len <= isize::MAX as usize).then(|| unsafe { core::slice::from_raw_parts(bytes, len) })
+    (!array.is_null() && fits::<T>(len)).then(|| unsafe { core::slice::from_raw_parts(array, len) })
+}
+
+/// An array of the caller's to write to, if there is one.
+///
+/// # Safety
+/// As [`slice`], for writes, and nothing else refers to it.
+pub unsafe fn slice_mut<'s, T>(array: *mut T, len: usize) -> Option<&'s mut [T]> {
+    // SAFETY: as above.
+    (!array.is_null() && fits::<T>(len)).then(|| unsafe { core::slice::from_raw_parts_mut(array, len) })
+}
+
+fn fits<T>(len: usize) -> bool {
+    len.checked_mul(size_of::<T>()).is_some_and(|bytes| bytes <= isize::MAX as usize)
 }

@@ -2,13 +2,13 @@
 
 use core::mem::MaybeUninit;
 
-use kinesic::{Pack, Pose, Translator, TranslatorState};
+use kinesic::{Pack, Translator};
 
+use crate::playing::{self, State};
 use crate::storage;
-use crate::{KINESIC_JOINTS, KINESIC_STATES, KinesicPose, KinesicStatus};
+use crate::{KINESIC_ROWS, KINESIC_STATES, KinesicPose, KinesicStatus};
 
-type Model = Translator<'static, KINESIC_JOINTS, KINESIC_STATES>;
-type State = TranslatorState<KINESIC_JOINTS, KINESIC_STATES>;
+type Engine = Translator<'static, KINESIC_ROWS, KINESIC_STATES>;
 
 /// A loaded translator. It borrows the pack.
 #[repr(C)]
@@ -19,7 +19,7 @@ pub struct KinesicTranslator {
 /// What a running translator remembers: all the RAM that there is.
 #[repr(C)]
 pub struct KinesicTranslatorState {
-    words: [MaybeUninit<usize>; 1344],
+    words: [MaybeUninit<usize>; 1616],
 }
 
 /// Loads the translator of a pack, with every check that makes stepping infallible.
@@ -33,13 +33,7 @@ pub unsafe extern "C" fn kinesic_translator_load(
     len: usize,
 ) -> KinesicStatus {
     // SAFETY: by the caller's promise.
-    let Some(bytes) = (unsafe { storage::bytes(pack, len) }) else { return KinesicStatus::Null };
-    match Pack::load(bytes).and_then(|pack| Model::load(&pack)) {
-        // SAFETY: by the caller's promise.
-        Ok(loaded) if unsafe { storage::put(model, loaded) } => KinesicStatus::Ok,
-        Ok(_) => KinesicStatus::Null,
-        Err(error) => error.into(),
-    }
+    unsafe { playing::load::<_, Engine>(model, pack, len, |_| true) }
 }
 
 /// Frames per second at which the pack must be stepped; 0 for bytes that are no pack.
@@ -60,10 +54,10 @@ pub unsafe extern "C" fn kinesic_frame_rate(pack: *const u8, len: usize) -> f32 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn kinesic_translator_state(state: *mut KinesicTranslatorState) {
     // SAFETY: by the caller's promise.
-    unsafe { storage::put(state, State::new()) };
+    unsafe { playing::new::<_, Engine>(state) };
 }
 
-/// Puts the filters where holding this pose for ever would have brought them, so that the first half second does not ease in.
+/// Initialises the filters to their steady state for this pose, so that the first half second does not ease in.
 ///
 /// # Safety
 /// `model` was loaded, `state` was made, `source` is valid; or null.
@@ -74,13 +68,11 @@ pub unsafe extern "C" fn kinesic_translator_start(
     source: *const KinesicPose,
 ) {
     // SAFETY: by the caller's promise.
-    let parts = unsafe { (storage::get::<_, Model>(model), storage::get_mut::<_, State>(state), source.as_ref()) };
-    if let (Some(model), Some(state), Some(source)) = parts {
-        model.start(state, &source.to_core());
-    }
+    unsafe { playing::start::<_, _, Engine>(model, state, source) };
 }
 
-/// Translates one frame: `source` in, `styled` out; they may be the same pose.
+/// Translates one frame: `source` in, `styled` out. A null or garbled `source` is a frame that did not come: the last one is held.
+/// `styled` is a pose of its own that keeps what went out before; `kinesic_pose_rest` makes the first.
 ///
 /// # Safety
 /// `model` was loaded, `state` was made, the poses are valid; or null.
@@ -91,17 +83,8 @@ pub unsafe extern "C" fn kinesic_translator_step(
     source: *const KinesicPose,
     styled: *mut KinesicPose,
 ) {
-    // SAFETY: by the caller's promise; the source is copied before the result is written.
-    let parts =
-        unsafe { (storage::get::<_, Model>(model), storage::get_mut::<_, State>(state), source.as_ref().copied()) };
-    if let (Some(model), Some(state), Some(source)) = parts {
-        let mut out = Pose::identity();
-        model.step(state, &source.to_core(), &mut out);
-        // SAFETY: by the caller's promise.
-        if let Some(styled) = unsafe { styled.as_mut() } {
-            styled.set(&out);
-        }
-    }
+    // SAFETY: by the caller's promise.
+    unsafe { playing::step::<_, _, Engine>(model, state, source, styled) };
 }
 
 /// Strength from now on: 0 = the source, 1 = as learned, beyond = exaggerated.
@@ -111,20 +94,22 @@ pub unsafe extern "C" fn kinesic_translator_step(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn kinesic_translator_set_strength(state: *mut KinesicTranslatorState, strength: f32) {
     // SAFETY: by the caller's promise.
-    if let Some(state) = unsafe { storage::get_mut::<_, State>(state) } {
-        state.controls.strength = strength;
+    if let Some(state) = unsafe { storage::get_mut::<_, State<Engine>>(state) } {
+        state.engine.controls.strength = strength;
     }
 }
 
-/// Weight of a joint from now on: 0 = untouched, 1 = translated. A joint past the capacity is ignored.
+/// Weight of a joint from now on: 0 = untouched, 1 = translated. A joint that the pack does not have is ignored.
 ///
 /// # Safety
-/// `state` was made, or is null.
+/// `model` was loaded, `state` was made; or null.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn kinesic_translator_set_weight(state: *mut KinesicTranslatorState, joint: usize, weight: f32) {
+pub unsafe extern "C" fn kinesic_translator_set_weight(
+    model: *const KinesicTranslator,
+    state: *mut KinesicTranslatorState,
+    joint: usize,
+    weight: f32,
+) {
     // SAFETY: by the caller's promise.
-    let state = unsafe { storage::get_mut::<_, State>(state) };
-    if let Some(mask) = state.and_then(|state| state.controls.mask.get_mut(joint)) {
-        *mask = weight;
-    }
+    unsafe { playing::set_weight::<_, _, Engine>(model, state, joint, weight, |state| &mut state.controls) };
 }

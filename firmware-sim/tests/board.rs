@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
-use kinesic::{Pose, Translator, TranslatorState};
+use kinesic::{Pipeline, PipelineState, Pose, Translator, TranslatorState};
 use kinesic_firmware_sim::build::{self, Folders};
 use kinesic_firmware_sim::data::Data;
 use kinesic_firmware_sim::toolchain;
@@ -16,17 +16,18 @@ mod motion;
 fn expected() -> String {
     let file = PackFile::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../models/weary.kin")).unwrap();
     let pack = file.pack().unwrap();
-    let style = Translator::<19, 60>::load(&pack).unwrap();
-    let mut state = TranslatorState::new();
-    state.controls.strength = 0.8;
+    let pipeline = Pipeline::<Translator<20, 60>, 20>::load(&pack).unwrap();
+    let mut state = PipelineState::<TranslatorState<20, 60>, 20>::new();
+    state.engine.controls.strength = 0.8;
     let mut styled = Pose::identity();
     let mut lines = String::new();
     for frame in 0..motion::FRAMES {
-        style.step(&mut state, &motion::read_pose(frame), &mut styled);
-        if frame % 30 == 29 {
-            lines += &format!("frame {frame}: neck bends by {} milliradians\n", motion::neck(&styled));
+        pipeline.step(&mut state, motion::read_pose(frame).as_ref(), &mut styled);
+        if frame % 25 == 24 {
+            lines += &format!("frame {frame}: the left arm is turned by {} milliradians\n", motion::arm(&styled));
         }
     }
+    lines += &format!("{} of {} frames were held\n", state.report().faulty, state.report().frames);
     lines
 }
 
@@ -35,7 +36,8 @@ fn expected() -> String {
 fn the_board_prints_what_the_host_computes() {
     let data = Data::read(None).unwrap();
     let expected = expected();
-    assert_eq!(expected.lines().count(), 6, "{expected}");
+    assert_eq!(expected.lines().count(), 8, "{expected}");
+    assert!(expected.ends_with("4 of 180 frames were held\n"), "{expected}");
     // Where the layouts of the project have their memory: QEMU's only STM32F405 and its generic RISC-V board.
     for (name, machine) in [("m4f", "netduinoplus2"), ("rv32imc", "virt")] {
         let target = &data.targets[name];

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use kinesic::nalgebra::{Quaternion, UnitQuaternion, Vector3};
-use kinesic::{Pose, Translator, TranslatorState};
+use kinesic::{Pipeline, PipelineState, Pose, Translator, TranslatorState};
 use kinesic_firmware_sim::build::{self, Folders};
 use kinesic_firmware_sim::data::Data;
 use kinesic_firmware_sim::toolchain;
@@ -48,17 +48,23 @@ fn read_pose(frame: u32) -> Pose<32> {
 fn expected() -> String {
     let file = PackFile::read(&repository().join("models/weary.kin")).unwrap();
     let pack = file.pack().unwrap();
-    let style = Translator::<32, 1280>::load(&pack).unwrap();
-    let mut state = TranslatorState::new();
-    state.controls.strength = 0.8;
-    state.controls.mask[12] = 0.5;
-    let controls = state.controls;
-    style.start(&mut state, &read_pose(0));
-    assert_eq!(state.controls, controls);
+    let pipeline = Pipeline::<Translator<33, 1280>, 33>::load(&pack).unwrap();
+    let mut state = PipelineState::<TranslatorState<33, 1280>, 33>::new();
+    let controls = &mut state.engine.controls;
+    controls.strength = 0.8;
+    pipeline.rig().weigh(12, 0.5, &mut controls.mask);
+    let controls = *controls;
+    pipeline.start(&mut state, &read_pose(0));
+    assert_eq!(state.engine.controls, controls);
     let mut styled = Pose::identity();
     let mut lines = String::new();
     for frame in 0..180 {
-        style.step(&mut state, &read_pose(frame), &mut styled);
+        let mut source = read_pose(frame);
+        if frame == 89 {
+            source.rotations[5] = UnitQuaternion::new_unchecked(Quaternion::new(f32::NAN, 0.0, 0.0, 0.0));
+        }
+        let came = (!(118..122).contains(&frame)).then_some(&source);
+        pipeline.step(&mut state, came, &mut styled);
         if frame % 30 == 29 {
             let rotations = styled.rotations.iter().take(19).flat_map(|q| q.coords.iter());
             let words = styled.root.iter().chain(rotations).map(|x| x.to_bits());
@@ -66,6 +72,7 @@ fn expected() -> String {
             lines += &format!("frame {frame:03}: {hash:08x}\n");
         }
     }
+    assert_eq!(state.report().faulty, 5);
     lines
 }
 

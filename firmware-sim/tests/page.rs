@@ -15,9 +15,10 @@ use kinesic_host::face::{Wish, edit};
 use kinesic_host::gait::{Manner, walk};
 use kinesic_host::models;
 use kinesic_host::pack::PackFile;
-use kinesic_host::prepare::{Source, fingerprint};
+use kinesic_host::prepare::Source;
 use kinesic_host::view::{self, View, ViewClip, ViewFace, ViewPack};
 use serde_json::Value;
+use sha2::{Digest, Sha256};
 use visit::{apart, dark, fits, pose, set, settle, shot, state, well};
 
 /// The core of the page, built again. `KINESIC_WASM=write` keeps it: `./ci.sh wasm`.
@@ -30,7 +31,7 @@ fn rebuilt() -> (Vec<u8>, String) {
 fn source(manner: &Manner, phase: f64, seed: u64) -> Source {
     let clip = walk(manner, 6.0, 60.0, phase, seed);
     let map = JointMap::detect(&clip.skeleton).unwrap();
-    Source { path: "made".into(), clip, map }
+    Source { path: "made".into(), clip, map, log: None }
 }
 
 /// Two engines, two clips, a target: four figures.
@@ -72,7 +73,8 @@ fn the_core_in_the_page_is_that_of_the_repository() {
     );
 }
 
-/// SHA-256 and path of the module and of every file that it is made of.
+/// SHA-256 and path of the module and of every file that it is made of. Comments and blank lines of sources do not count: they are not
+/// in the module.
 fn made_of(module: &Path) -> String {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let mut files = vec![module.to_owned()];
@@ -88,12 +90,36 @@ fn made_of(module: &Path) -> String {
     }
     files.extend(["wasm/Cargo.lock", "kernel-arch/build.rs"].map(|file| root.join(file)));
     let line = |file: &PathBuf| {
-        let found = fingerprint(file).unwrap();
+        let bytes = std::fs::read(file).unwrap();
+        let comment = match file.extension().and_then(|extension| extension.to_str()) {
+            Some("rs") => Some("//"),
+            Some("toml") => Some("#"),
+            _ => None,
+        };
+        let counts = match comment {
+            Some(comment) => without_comments(&String::from_utf8(bytes).unwrap(), comment),
+            None => bytes,
+        };
+        let hash: String = Sha256::digest(counts).iter().map(|byte| format!("{byte:02x}")).collect();
         let path = file.canonicalize().unwrap();
-        format!("{}  {}\n", found.sha256, path.strip_prefix(root.canonicalize().unwrap()).unwrap().display())
+        format!("{hash}  {}\n", path.strip_prefix(root.canonicalize().unwrap()).unwrap().display())
     };
     files.sort();
     files.iter().map(line).collect()
+}
+
+/// The lines that hold more than a comment. One behind code stays.
+fn without_comments(text: &str, comment: &str) -> Vec<u8> {
+    let counts = |line: &&str| !line.trim().is_empty() && !line.trim_start().starts_with(comment);
+    text.lines().filter(counts).flat_map(|line| [line, "\n"]).collect::<String>().into_bytes()
+}
+
+#[test]
+fn a_comment_does_not_change_what_the_page_is_made_of() {
+    let plain = without_comments("fn a() {\n    b();\n}\n", "//");
+    assert_eq!(without_comments("//! A.\n\nfn a() {\n    // Why.\n    b();\n}\n", "//"), plain);
+    assert_ne!(without_comments("fn a() {\n    b(); // Why.\n}\n", "//"), plain);
+    assert_ne!(without_comments("fn a() {\n    c();\n}\n", "//"), plain);
 }
 
 #[test]

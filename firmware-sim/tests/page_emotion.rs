@@ -4,15 +4,15 @@ mod visit;
 
 use std::path::{Path, PathBuf};
 
-use kinesic::emotion::EmotionState;
 use kinesic_firmware_sim::browser::Browser;
 use kinesic_host::clip::JointMap;
-use kinesic_host::emotion::{EmotionModel, HostEmotion, MAX_KEYS, made};
+use kinesic_host::emotion::play::{self, HostState};
+use kinesic_host::emotion::{EmotionModel, HostEmotion, made};
 use kinesic_host::gait::{Manner, walk};
 use kinesic_host::models;
 use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_host::prepare::Source;
-use kinesic_host::rig::{MAX_JOINTS, Rig};
+use kinesic_host::rig::Rig;
 use kinesic_host::view::{self, CHECKED, View, ViewClip, ViewPack};
 use serde_json::{Value, json};
 use visit::{apart, dark, fits, pose, set, settle, shot, state, well};
@@ -39,17 +39,16 @@ fn open(folder: &Path, shown: &View, size: [u32; 2], phone: bool) -> Browser {
 fn host(of: &ViewPack, changes: &[(usize, [f32; 2])]) -> String {
     let pack = of.file.pack().unwrap();
     let model = HostEmotion::load(&pack).unwrap();
-    let mut state = Box::new(EmotionState::<MAX_JOINTS, MAX_KEYS>::new());
+    let rig = Rig::from_pack(&pack).unwrap();
+    let mut state = Box::new(HostState::new());
     let dt = 1.0 / pack.metadata().frame_rate;
     let step = |frame| {
         for (_, [weary, swaying]) in changes.iter().filter(|(from, _)| *from == frame) {
             state.strength = [*weary, *swaying, 0.0, 0.0];
         }
-        let mut pose = kinesic::Pose::identity();
-        model.step(&mut state, dt, &mut pose);
-        pose
+        play::pose(&model, &rig.frames(), &mut state, dt)
     };
-    view::digest(&(0..CHECKED).map(step).collect::<Vec<_>>(), model.skeleton().joints())
+    view::digest(&(0..CHECKED).map(step).collect::<Vec<_>>(), rig.joints())
 }
 
 fn page(at: &mut Browser) -> String {
@@ -224,7 +223,7 @@ fn emotions_stand_beside_other_packs_and_each_other() {
     // With a clip that other packs play: as long as that, and its sliders do not disturb the others.
     let clip = walk(&Manner::NEUTRAL, 6.0, 60.0, 0.3, 3);
     let map = JointMap::detect(&clip.skeleton).unwrap();
-    let source = Source { path: "made".into(), clip, map };
+    let source = Source { path: "made".into(), clip, map, log: None };
     let shown = View {
         packs: vec![ViewPack { name: "weary".to_owned(), file: models::weary() }],
         clips: vec![ViewClip { name: "a walk".to_owned(), source, target: None }],

@@ -44,9 +44,9 @@ fn walks_before_and_after() {
     let rig = Rig::from_pack(&pack).unwrap();
     let [source, target] = [source, target].map(|clip| {
         let map = JointMap::detect(&clip.skeleton).unwrap();
-        Source { path: "made".into(), clip, map }.on_rig(&rig, 60.0).unwrap()
+        Source { path: "made".into(), clip, map, log: None }.on_rig(&rig, 60.0).unwrap()
     });
-    let result = rig.clip(&play(&pack, &rig.poses(&source), &Settings::default()).unwrap(), source.frame_time);
+    let result = rig.clip(&play(&pack, &rig, &rig.poses(&source), &Settings::default()).unwrap(), source.frame_time);
     let rows = [("a walk", &source), ("through models/weary.kin", &result), ("the same walk, weary", &target)];
     // On white: pages are read on dark grounds too.
     let svg = figures(&rows).replacen(">\n", ">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n", 1);
@@ -121,7 +121,7 @@ fn the_live_page() {
     let source = |manner: &Manner, seed: u64| {
         let clip = made(manner, seed);
         let map = JointMap::detect(&clip.skeleton).unwrap();
-        Source { path: "made".into(), clip, map }
+        Source { path: "made".into(), clip, map, log: None }
     };
     let packs = [("weary", models::weary()), ("mechanics", models::mechanics())];
     let clip = ViewClip {

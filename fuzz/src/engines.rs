@@ -1,12 +1,15 @@
 //! Every engine, 100 frames. A new engine gets a function and a line in [`step_all`].
 
 use kinesic::emotion::{Emotion, EmotionState, Place};
+use kinesic::engine::{Engine, FromPack, Mix, MixState};
 use kinesic::face::{FaceState, FaceSynth, POINTS};
 use kinesic::limit::{LimitState, Limiter};
-use kinesic::mechanics::{Blend, Decoupled, Modulation, Window, mix, modulate};
-use kinesic::{BodyMechanics, Components, ComponentsState, MechanicsState, Pack, Pose, Translator, TranslatorState};
+use kinesic::mechanics::{Blend, Decoupled, Expression, Modulation, Window, mix, modulate};
+use kinesic::{
+    BodyMechanics, Components, ComponentsState, Frame, MechanicsState, Pack, Pipeline, PipelineState, Pose, Translator,
+};
 
-use super::frames::{Frames, JOINTS};
+use super::frames::{Frames, JOINTS, ROWS};
 
 /// Frames that each engine steps.
 const STEPS: usize = 100;
@@ -21,21 +24,68 @@ pub fn step_all(pack: &Pack, frames: &mut Frames) {
     limit(pack, frames);
 }
 
-fn translator(pack: &Pack, frames: &mut Frames) {
-    let Ok(model) = Translator::<JOINTS, 1024>::load(pack) else { return };
-    let mut state = Box::new(TranslatorState::new());
-    let mut styled = Pose::identity();
-    model.start(&mut state, &frames.pose());
+/// An engine by itself and between poses, whatever goes in, with controls set anew every ten frames: a sound frame stays sound, and
+/// what comes out is a pose.
+fn hold<'p, E: Engine<ROWS> + FromPack<'p>>(pack: &Pack<'p>, frames: &mut Frames, set: fn(&mut E::State, &mut Frames)) {
+    let Ok(device) = Pipeline::<E, ROWS>::load(pack) else { return };
+    let mut state = Box::new(E::State::default());
+    device.engine.start(&mut state, &frames.frame());
     for step in 0..STEPS {
         if step % 10 == 0 {
-            state.controls.strength = frames.control();
-            state.controls.mask = std::array::from_fn(|_| frames.control());
+            set(&mut state, frames);
         }
-        model.step(&mut state, &frames.pose(), &mut styled);
+        let mut frame = frames.frame();
+        let sound = frame.is_sound();
+        device.engine.step(&mut state, &mut frame);
+        assert!(!sound || frame.is_sound(), "step {step}: {frame:?}");
+        if frames.next().is_multiple_of(8) {
+            frame = Frame::new();
+            device.engine.idle(&mut state, &mut frame);
+            assert!(frame.is_sound(), "step {step}: idle: {frame:?}");
+        }
+    }
+    let mut state = Box::new(PipelineState::new());
+    let mut out = device.rig().rest();
+    device.start(&mut state, &frames.pose());
+    for step in 0..STEPS {
+        if step % 10 == 0 {
+            set(&mut state.engine, frames);
+        }
+        let pose = frames.pose();
+        device.step(&mut state, (!frames.next().is_multiple_of(8)).then_some(&pose), &mut out);
+        let unit = |q: &kinesic::nalgebra::UnitQuaternion<f32>| (q.norm() - 1.0).abs() < 0.1;
+        assert!(out.root.iter().all(|x| x.is_finite()), "step {step}: {out:?}");
+        assert!(out.rotations.iter().take(device.rig().joints()).all(unit), "step {step}: {out:?}");
+    }
+    let mut servos = [0.0; 3 * ROWS];
+    for _ in 0..STEPS {
+        let frame = frames.frame();
+        device.step_coordinates(&mut state, Some(frame.coordinates()), &mut servos);
+        assert!(servos.iter().all(|x| x.is_finite()));
     }
 }
 
+/// Strength and mask.
+macro_rules! controls {
+    ($state:expr, $frames:expr) => {{
+        $state.controls.strength = $frames.control();
+        $state.controls.mask = std::array::from_fn(|_| std::array::from_fn(|_| $frames.control()));
+    }};
+}
+
+fn translator(pack: &Pack, frames: &mut Frames) {
+    hold::<Translator<ROWS, 1024>>(pack, frames, |state, frames| controls!(state, frames));
+    // In series with whatever else the pack holds, and side by side with it.
+    type Rest<'a> = (Option<Components<'a, ROWS, 64>>, Option<Limiter<'a, ROWS>>);
+    hold::<(Translator<ROWS, 1024>, Rest)>(pack, frames, |(state, _), frames| controls!(state, frames));
+    type Both<'a> = Mix<(Translator<'a, ROWS, 1024>, Option<Components<'a, ROWS, 64>>)>;
+    hold::<Both>(pack, frames, |state: &mut MixState<_, 2>, frames| {
+        (state.weights, state.source) = ([frames.control(), frames.control()], frames.control());
+    });
+}
+
 fn mechanics(pack: &Pack, frames: &mut Frames) {
+    hold::<Expression<JOINTS, 512, 120>>(pack, frames, |state, frames| state.modulation.amount = frames.control());
     let Ok(model) = BodyMechanics::<JOINTS, 512, 120>::load(pack) else { return };
     let mut state = Box::new(MechanicsState::new());
     let (mut parts, mut before) = (Decoupled::identity(), Decoupled::identity());
@@ -55,23 +105,24 @@ fn mechanics(pack: &Pack, frames: &mut Frames) {
 }
 
 fn components(pack: &Pack, frames: &mut Frames) {
-    let Ok(model) = Components::<JOINTS, 64>::load(pack) else { return };
-    let mut state = ComponentsState::new();
-    let mut styled = Pose::identity();
+    hold::<Components<ROWS, 64>>(pack, frames, |state, frames| controls!(state, frames));
+    let Ok(model) = Components::<ROWS, 64>::load(pack) else { return };
+    let (mut state, mut frame) = (ComponentsState::new(), Frame::new());
     for step in 0..STEPS {
         if step % 10 == 0 {
-            state.controls.strength = frames.control();
-            state.controls.mask = std::array::from_fn(|_| frames.control());
+            controls!(state, frames);
         }
-        model.step(&mut state, &frames.pose(), &mut styled);
-        model.step_stored(&mut state, &mut styled);
+        model.step_stored(&mut state, &mut frame);
     }
 }
 
 fn emotion(pack: &Pack, frames: &mut Frames) {
-    let Ok(model) = Emotion::<JOINTS, 32, 64>::load(pack) else { return };
-    let mut state = Box::new(EmotionState::<JOINTS, 32>::new());
-    let mut pose = Pose::identity();
+    hold::<Emotion<ROWS, 32, 64>>(pack, frames, |state, frames| {
+        state.strength = std::array::from_fn(|_| frames.control());
+    });
+    let Ok(model) = Emotion::<ROWS, 32, 64>::load(pack) else { return };
+    let mut state = Box::new(EmotionState::<ROWS, 32>::new());
+    let mut frame = Frame::new();
     for step in 0..STEPS {
         if step % 10 == 0 {
             state.strength = std::array::from_fn(|_| frames.control());
@@ -82,10 +133,9 @@ fn emotion(pack: &Pack, frames: &mut Frames) {
             2 => model.change(&mut state),
             _ => {}
         }
-        model.step(&mut state, frames.control(), &mut pose);
+        model.step(&mut state, frames.control(), &mut frame);
         let mut motion = [0.0; 1024];
         model.motion(&state.strength, &mut motion);
-        model.score(&motion);
     }
 }
 
@@ -104,19 +154,20 @@ fn face(pack: &Pack, frames: &mut Frames) {
     }
 }
 
-/// Whatever goes in, what comes out is a pose, and within the table's ranges.
+/// Whatever goes in, what comes out is within the table's ranges.
 fn limit(pack: &Pack, frames: &mut Frames) {
-    let Ok(model) = Limiter::<JOINTS>::load(pack) else { return };
+    hold::<Limiter<ROWS>>(pack, frames, |_, _| ());
+    let Ok(model) = Limiter::<ROWS>::load(pack) else { return };
     let mut state = LimitState::new();
-    let mut out = Pose::identity();
-    model.start(&mut state, &frames.pose());
+    model.start(&mut state, &frames.frame());
     for _ in 0..STEPS {
-        let pose = frames.pose();
-        model.step(&mut state, (!frames.next().is_multiple_of(8)).then_some(&pose), &mut out);
-        assert!(out.is_sound(model.joints()), "{out:?}");
-        for (joint, (lower, upper)) in model.table().lower.iter().zip(model.table().upper).enumerate() {
-            let ranges = lower.iter().zip(upper);
-            assert!(state.angles(joint).iter().zip(ranges).all(|(x, (lower, upper))| (lower..=upper).contains(&x)));
+        let mut frame = frames.frame();
+        model.step(&mut state, &mut frame);
+        let table = model.table();
+        let ranges = table.lower.as_flattened().iter().zip(table.upper.as_flattened());
+        for (index, ((lower, upper), rate)) in ranges.zip(table.velocity.as_flattened()).enumerate() {
+            // Travel and what a row does not use have no rate.
+            assert!(*rate == 0.0 || (lower..=upper).contains(&&frame.coordinates()[index]), "{index}: {frame:?}");
         }
     }
 }

@@ -1,10 +1,13 @@
 //! Frames for the engines: mostly plausible, some broken, all of them decided by the input's bytes.
 
-use kinesic::Pose;
 use kinesic::nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use kinesic::{Frame, Pose};
 
 /// Joints of the frames.
 pub const JOINTS: usize = 32;
+
+/// Rows of the frames.
+pub const ROWS: usize = JOINTS + 1;
 
 /// Values that arithmetic does not like.
 const ODD: [f32; 8] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, f32::MIN, 1e-40, 0.0, -0.0];
@@ -68,5 +71,22 @@ impl Frames {
             }
         }
         pose
+    }
+
+    /// Coordinates without a rig before them; one frame in eight has odd numbers, one in sixteen is noise, one in sixteen leaps.
+    pub fn frame(&mut self) -> Frame<ROWS> {
+        let mut frame = Frame::new();
+        frame.coordinates_mut().iter_mut().for_each(|x| *x = self.unit());
+        frame.ground = [self.unit(), self.unit()];
+        if self.next().is_multiple_of(8) {
+            let at = self.next() as usize % (3 * ROWS);
+            frame.coordinates_mut()[at] = self.control();
+        }
+        match self.next() % 16 {
+            0 => frame.coordinates_mut().iter_mut().for_each(|x| *x = f32::from_bits(self.next() as u32)),
+            1 => (frame.ground, frame.leap) = ([self.control(); 2], [1e6 * self.unit(), self.control()]),
+            _ => {}
+        }
+        frame
     }
 }

@@ -24,8 +24,8 @@ pub fn urdf(data: &[u8]) {
         Rig::new(&skeleton, &map).expect("the gait's skeleton is a rig")
     });
     let Ok(made) = import(&robot, &map, rig, &robot.name, 60.0, Rates::default()) else { return };
-    let tables = made.model.tables();
-    HostLimiter::new(tables.view(), made.model.meta, 60.0).expect("what is imported is checked");
+    let tables = made.model.tables(rig).expect("what is imported is checked");
+    let _: HostLimiter = tables.limiter().expect("what is imported is checked");
     let names: Vec<String> = rig.skeleton.joints.iter().map(|joint| joint.name.clone()).collect();
     let _ = Table::new(&made.model, &names, &made.urdf).csv();
 }

@@ -5,6 +5,7 @@
 //! - `keyframes TABLE.tsv ORDER`: error of the spline by number of keyframes, chosen in three ways
 //! - `synthesis PACK.kin`: 21 strengths of each attribute, what is read from the played motion, hand speed
 //! - `mix PACK.kin`: two strengths at once
+//! - `turns PACK.kin TABLE.tsv ORDER`: by how much head and hands turn from the weakest label to the strongest
 
 use std::path::Path;
 
@@ -18,11 +19,11 @@ use kinesic_host::emotion::labels::{self, Attribute};
 use kinesic_host::emotion::motions::{self, Example, Motion, features, pairs, takes};
 use kinesic_host::emotion::play::{Settings, play};
 use kinesic_host::emotion::segment::{Cut, FRAME_RATE, Segment};
-use kinesic_host::emotion::{
-    HostEmotion, RankOptions, Samples, TrainOptions, choose_cost, pair_accuracy, rank, spearman, train,
-};
+use kinesic_host::emotion::{HostEmotion, TrainOptions, train};
+use kinesic_host::learn::{RankOptions, Samples, choose_cost, pair_accuracy, rank, spearman};
 use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_host::rig::Rig;
+use nalgebra::{UnitQuaternion, Vector4};
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
 use rand::seq::SliceRandom;
@@ -43,6 +44,7 @@ fn main() -> Result<(), Failure> {
         ["keyframes", table, orders @ ..] => keyframes(Path::new(table), orders),
         ["synthesis", pack] => synthesis(Path::new(pack)),
         ["mix", pack] => mix(Path::new(pack)),
+        ["turns", pack, table, order] => turns(Path::new(pack), Path::new(table), order),
         _ => Err("usage: see the first lines of host/examples/emotion_bench.rs".into()),
     }
 }
@@ -127,7 +129,7 @@ fn accuracy(table: &Path, orders: &[&str]) -> Result<(), Failure> {
 fn pack(rig: &Rig, attributes: &[Attribute], examples: &[Example]) -> Result<PackFile, Failure> {
     let names: Vec<String> = attributes.iter().map(|attribute| attribute.name.clone()).collect();
     let trained = train(rig, "bench", &names, examples, &TrainOptions::default())?;
-    Ok(PackFile::from_bytes(&trained.model.pack(rig, &Provenance::default())))
+    Ok(PackFile::from_bytes(&trained.model.pack(&trained.rig, &Provenance::default())))
 }
 
 fn transfer(trained: &Path, test: &Path, columns: &[&str]) -> Result<(), Failure> {
@@ -275,5 +277,36 @@ fn mix(path: &Path) -> Result<(), Failure> {
         }
     }
     println!("Spearman of asked and read: {:.4}, {:.4}", spearman(&asked[0], &read[0]), spearman(&asked[1], &read[1]));
+    Ok(())
+}
+
+/// Mean local rotation of a joint.
+fn mean_rotation<'a>(clips: impl Iterator<Item = &'a Clip>, joint: usize) -> UnitQuaternion<f64> {
+    let mut sum = Vector4::zeros();
+    for q in clips.flat_map(|clip| clip.rotations.iter().skip(joint).step_by(clip.skeleton.joints.len())) {
+        sum += if sum.dot(&q.coords) < 0.0 { -q.coords } else { q.coords };
+    }
+    UnitQuaternion::new_normalize(sum.into())
+}
+
+fn turns(path: &Path, table: &Path, order: &str) -> Result<(), Failure> {
+    let file = PackFile::read(path)?;
+    let view = file.pack()?;
+    let scorer = Scorer::load(&view)?;
+    let rows = labels::read(table, &attributes(&[order])?)?;
+    let (_, examples) = motions::read(rows, Some(scorer.rig.clone()), &ReadOptions::default(), &|_| ())?;
+    let made = [played(&view, &scorer, &[0.0])?.1, played(&view, &scorer, &[1.0])?.1];
+    let labelled = |level: f64| examples.iter().filter(move |e| e.levels[0] == Some(level)).map(|e| &e.clip);
+    let (mut cells, mut heads) = (Vec::new(), Vec::new());
+    for (name, joint) in
+        [("head", Canonical::Head), ("left hand", Canonical::LWrist), ("right hand", Canonical::RWrist)]
+    {
+        let Some(joint) = scorer.rig.map.joint(joint) else { continue };
+        let [weak, strong] = made.each_ref().map(|clip| mean_rotation(std::iter::once(clip), joint));
+        let recorded = mean_rotation(labelled(0.0), joint).angle_to(&mean_rotation(labelled(1.0), joint));
+        heads.push(name);
+        cells.push(format!("{:.1} ({:.1})", weak.angle_to(&strong).to_degrees(), recorded.to_degrees()));
+    }
+    println!("| {} | {} | ({})", path.file_stem().unwrap_or_default().display(), cells.join(" | "), heads.join(", "));
     Ok(())
 }

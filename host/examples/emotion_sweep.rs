@@ -9,16 +9,14 @@
 
 use std::path::Path;
 
-use kinesic::Pose;
-use kinesic::emotion::EmotionState;
 use kinesic::model::ATTRIBUTES;
 use kinesic::pose::{World, forward};
-use kinesic_host::emotion::{HostEmotion, MAX_KEYS};
+use kinesic_host::emotion::HostEmotion;
+use kinesic_host::emotion::play::{HostState, pose};
 use kinesic_host::pack::PackFile;
-use kinesic_host::rig::MAX_JOINTS;
+use kinesic_host::rig::{MAX_JOINTS, Rig};
 use nalgebra::Vector3;
 
-type State = EmotionState<MAX_JOINTS, MAX_KEYS>;
 type Positions = Vec<Vector3<f32>>;
 
 /// Seconds that are played.
@@ -33,7 +31,8 @@ fn main() {
         let file = PackFile::read(Path::new(&path)).unwrap_or_else(|error| stop(&error));
         let pack = file.pack().unwrap_or_else(|error| stop(&error));
         let emotion = HostEmotion::load(&pack).unwrap_or_else(|error| stop(&error));
-        row(&path, &emotion);
+        let rig = Rig::from_pack(&pack).unwrap_or_else(|error| stop(&error));
+        row(&path, &Motion { emotion, rig });
     }
 }
 
@@ -42,7 +41,13 @@ fn stop(error: &dyn std::fmt::Display) -> ! {
     std::process::exit(1);
 }
 
-fn row(path: &str, emotion: &HostEmotion) {
+/// A model and its rig.
+struct Motion<'a> {
+    emotion: HostEmotion<'a>,
+    rig: Rig,
+}
+
+fn row(path: &str, emotion: &Motion) {
     let rates = [30, 60, 120].map(|rate| play(emotion, rate, &|t| wave(t)));
     let mut differ = 0f32;
     for (at, slow) in rates[0].iter().enumerate() {
@@ -73,25 +78,25 @@ fn wave(time: f32) -> f32 {
 }
 
 /// All attributes at a part of their range.
-fn strengths(emotion: &HostEmotion, part: f32) -> [f32; ATTRIBUTES] {
-    emotion.meta().attributes.map(|a| a.map_or(0.0, |a| a.strength[0] + part * (a.strength[1] - a.strength[0])))
+fn strengths(emotion: &Motion, part: f32) -> [f32; ATTRIBUTES] {
+    emotion.emotion.meta().attributes.map(|a| a.map_or(0.0, |a| a.strength[0] + part * (a.strength[1] - a.strength[0])))
 }
 
-fn start(emotion: &HostEmotion, part: f32) -> Box<State> {
-    let mut state = Box::new(State::new());
+fn start(emotion: &Motion, part: f32) -> Box<HostState> {
+    let mut state = Box::new(HostState::new());
     state.strength = strengths(emotion, part);
     state
 }
 
-fn step(emotion: &HostEmotion, state: &mut State, dt: f32) -> Positions {
-    let (mut pose, mut world) = (Pose::identity(), World::<MAX_JOINTS>::identity());
-    emotion.step(state, dt, &mut pose);
-    forward(emotion.skeleton(), &pose, &mut world);
-    world.positions[..emotion.skeleton().joints()].to_vec()
+fn step(emotion: &Motion, state: &mut HostState, dt: f32) -> Positions {
+    let mut world = World::<MAX_JOINTS>::identity();
+    let pose = pose(&emotion.emotion, &emotion.rig.frames(), state, dt);
+    forward(&emotion.rig.device(), &pose, &mut world);
+    world.positions[..emotion.rig.joints()].to_vec()
 }
 
 /// The strengths change at 30 moments a second, whatever the rate.
-fn play(emotion: &HostEmotion, rate: usize, part: &dyn Fn(f32) -> f32) -> Vec<Positions> {
+fn play(emotion: &Motion, rate: usize, part: &dyn Fn(f32) -> f32) -> Vec<Positions> {
     let mut state = start(emotion, part(0.0));
     let frame = |frame: usize| {
         if frame.is_multiple_of(rate / 30) {
@@ -118,11 +123,11 @@ fn extremes(frames: &[Positions]) -> [f32; 2] {
     most
 }
 
-fn jumps(emotion: &HostEmotion) -> [f32; 2] {
+fn jumps(emotion: &Motion) -> [f32; 2] {
     const DT: f32 = 1e-4;
     let mut state = start(emotion, 0.0);
-    let speeds = |state: &State| {
-        let mut state = *state;
+    let speeds = |state: &HostState| {
+        let mut state = Box::new(*state);
         let [a, b] = [(); 2].map(|()| step(emotion, &mut state, DT));
         b.iter().zip(&a).map(|(b, a)| (b - a) / DT).collect::<Positions>()
     };
@@ -131,7 +136,7 @@ fn jumps(emotion: &HostEmotion) -> [f32; 2] {
         step(emotion, &mut state, 0.02);
         let (before, speed) = (step(emotion, &mut state, 0.0), speeds(&state));
         state.strength = strengths(emotion, [1.0, 0.3, 0.8, 0.0][change % 4]);
-        emotion.change(&mut state);
+        emotion.emotion.change(&mut state);
         let (after, speed_after) = (step(emotion, &mut state, 0.0), speeds(&state));
         most = [most[0].max(apart(&before, &after)), most[1].max(apart(&speed, &speed_after))];
     }

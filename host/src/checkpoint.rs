@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use sha2::{Digest, Sha256};
 
-use crate::files::write_whole;
+use crate::files::{self, write_whole};
 
 /// First bytes of a checkpoint: name and version of its format.
 const MAGIC: [u8; 8] = *b"KNSCKP01";
@@ -98,7 +98,7 @@ impl Checkpoint {
     /// Reads what an earlier run has left; false if there is nothing.
     pub fn resume(&mut self) -> Result<bool, CheckpointError> {
         let path = || self.path.clone();
-        let bytes = match std::fs::read(&self.path) {
+        let bytes = match files::read(&self.path) {
             Ok(bytes) => bytes,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(false),
             Err(error) => return Err(CheckpointError::Io { path: path(), error }),

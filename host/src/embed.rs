@@ -11,7 +11,7 @@ use crate::pack::PackFile;
 const LINE: usize = 30;
 
 /// A module with the constants `JOINTS`, `FRAME_RATE`, those of each engine that the pack holds, and `PACK`: the bytes, aligned as
-/// the device wants them. It needs nothing, not even `std`.
+/// the device wants them. It needs nothing, not even `std`. Of several models of one engine, the device loads the first.
 pub fn rust_module(file: &PackFile, origin: &str) -> Result<String, LoadError> {
     let pack = file.pack()?;
     let metadata = pack.metadata();
@@ -23,9 +23,18 @@ pub fn rust_module(file: &PackFile, origin: &str) -> Result<String, LoadError> {
         "//! Pack {:?}, made by `kinesic export --rust` from {origin:?}. Made again, not edited.",
         metadata.name
     );
+    let mut models: Vec<ModelMeta> = Vec::new();
     for meta in metadata.models.iter() {
+        if models.iter().all(|known| std::mem::discriminant(known) != std::mem::discriminant(&meta)) {
+            models.push(meta);
+        }
+    }
+    let has_mechanics = models.iter().any(|meta| meta.mechanics().is_some());
+    let face_units = if has_mechanics { "FACE_UNITS" } else { "UNITS" };
+    for meta in &models {
         out.push_str("//!\n//! ```text\n");
-        let (model, state) = engine(&meta);
+        let (model, state) = engine(meta);
+        let model = if meta.face().is_some() { model.replace("UNITS", face_units) } else { model.to_owned() };
         let _ = writeln!(
             out,
             "//! let pack = kinesic::Pack::load(PACK)?;\n//! let model = kinesic::{model}::load(&pack)?;"
@@ -36,13 +45,14 @@ pub fn rust_module(file: &PackFile, origin: &str) -> Result<String, LoadError> {
         let _ = write!(out, "\n/// {doc}.\n#[allow(dead_code)]\npub const {name}: {kind} = {value};\n");
     };
     constant("Joints of a pose", "JOINTS", &metadata.joints.iter().count(), "usize");
+    constant("Rows of coordinates of a frame", "ROWS", &kinesic::Rig::load(&pack)?.rows(), "usize");
     constant(
-        "Frames a second at which the pack is stepped",
+        "Frames per second at which the pack is stepped",
         "FRAME_RATE",
         &format!("{:?}", metadata.frame_rate),
         "f32",
     );
-    for meta in metadata.models.iter() {
+    for meta in models {
         match meta {
             ModelMeta::Translator(meta) => {
                 constant("Filter states of the translator", "STATES", &(2 * meta.blocks + meta.drives), "usize");
@@ -67,9 +77,9 @@ pub fn rust_module(file: &PackFile, origin: &str) -> Result<String, LoadError> {
                 constant("Components of a keyframe, or inputs of the output layer", "WIDTH", &width, "usize");
             }
             ModelMeta::Face(meta) => {
-                constant("Hidden units of a cluster of head pose", "UNITS", &meta.hidden, "usize");
+                constant("Hidden units of a cluster of head pose", face_units, &meta.hidden, "usize");
             }
-            // As many joints as a pose.
+            // As many rows as a frame.
             ModelMeta::Limits(_) => {}
         }
     }
@@ -98,11 +108,11 @@ pub fn rust_module(file: &PackFile, origin: &str) -> Result<String, LoadError> {
 /// The types of an engine with the module's constants as capacities.
 fn engine(meta: &ModelMeta) -> (&'static str, &'static str) {
     match meta {
-        ModelMeta::Translator(_) => ("Translator::<JOINTS, STATES>", "TranslatorState"),
+        ModelMeta::Translator(_) => ("Translator::<ROWS, STATES>", "TranslatorState"),
         ModelMeta::Mechanics(_) => ("BodyMechanics::<JOINTS, UNITS, WINDOW>", "MechanicsState"),
-        ModelMeta::Components(_) => ("Components::<JOINTS, COMPONENTS>", "ComponentsState"),
-        ModelMeta::Emotion(_) => ("Emotion::<JOINTS, KEYS, WIDTH>", "EmotionState"),
+        ModelMeta::Components(_) => ("Components::<ROWS, COMPONENTS>", "ComponentsState"),
+        ModelMeta::Emotion(_) => ("Emotion::<ROWS, KEYS, WIDTH>", "EmotionState"),
         ModelMeta::Face(_) => ("FaceSynth::<UNITS>", "FaceState"),
-        ModelMeta::Limits(_) => ("Limiter::<JOINTS>", "LimitState"),
+        ModelMeta::Limits(_) => ("Limiter::<ROWS>", "LimitState"),
     }
 }

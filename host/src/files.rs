@@ -1,8 +1,10 @@
-//! Output files: whole or not at all.
+//! Files: read if they are regular, written whole or not at all.
 
 use std::ffi::{OsStr, OsString};
-use std::io::Write;
+use std::fs::FileType;
+use std::io::{Error, ErrorKind, Read, Result, Write};
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 
 use sha2::{Digest, Sha256};
 use tempfile::NamedTempFile;
@@ -14,16 +16,86 @@ const SUFFIX: &str = ".part";
 /// Longer names are told by their hash, so that the temporary one is not too long for the file system.
 const LONGEST: usize = 200;
 
+/// Bytes of standard input at most; nothing says beforehand how many there are.
+const LONGEST_INPUT: u64 = 1 << 30;
+
+/// The bytes of a regular file, or of a link to one. A path `-` is standard input, as often as it is read.
+///
+/// Anything else is refused: a pipe may never end or never begin, a device has no end.
+pub fn read(path: &Path) -> Result<Vec<u8>> {
+    if path == Path::new("-") {
+        return standard_input();
+    }
+    check_regular(path)?;
+    std::fs::read(path)
+}
+
+/// As [`read`], for text in UTF-8.
+pub fn read_text(path: &Path) -> Result<String> {
+    let refuse = || Error::new(ErrorKind::InvalidData, "it is not text in UTF-8");
+    String::from_utf8(read(path)?).map_err(|_| refuse())
+}
+
+/// Refuses what is there and is no regular file, without opening it.
+pub fn check_regular(path: &Path) -> Result<()> {
+    let kind = std::fs::metadata(path)?.file_type();
+    if kind.is_file() {
+        return Ok(());
+    }
+    let message = format!("it is {}, expected a regular file (or - for standard input)", name_of(kind));
+    Err(Error::new(if kind.is_dir() { ErrorKind::IsADirectory } else { ErrorKind::InvalidInput }, message))
+}
+
+fn name_of(kind: FileType) -> &'static str {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::FileTypeExt;
+        if kind.is_fifo() {
+            return "a pipe";
+        }
+        if kind.is_socket() {
+            return "a socket";
+        }
+        if kind.is_char_device() || kind.is_block_device() {
+            return "a device";
+        }
+    }
+    if kind.is_dir() { "a folder" } else { "no file" }
+}
+
+/// All of standard input, kept: a command reads a file's bytes and its digest.
+fn standard_input() -> Result<Vec<u8>> {
+    static READ: Mutex<Option<Vec<u8>>> = Mutex::new(None);
+    let mut kept = READ.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(bytes) = &*kept {
+        return Ok(bytes.clone());
+    }
+    let mut bytes = Vec::new();
+    std::io::stdin().lock().take(LONGEST_INPUT + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > LONGEST_INPUT {
+        let message = format!("standard input has more than {LONGEST_INPUT} bytes, expected at most that: name a file");
+        return Err(Error::new(ErrorKind::FileTooLarge, message));
+    }
+    Ok(kept.insert(bytes).clone())
+}
+
 /// Writes a file through a temporary neighbour that is renamed over `path` at the end: an older file there stays untouched
 /// until then, and nothing half-written is ever seen under that name.
 ///
 /// The neighbour is called `.kinesic-NAME-RANDOM.part` and locked while it is written. One that a killed process has left, for the
 /// same name, is removed.
-pub fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+///
+/// A file that is replaced leaves its permissions to the new one.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let prefix = prefix(path);
     remove_stale(folder, &prefix);
     let mut file = temporary(folder, &prefix)?;
+    if let Ok(older) = std::fs::metadata(path)
+        && older.is_file()
+    {
+        file.as_file().set_permissions(older.permissions())?;
+    }
     file.write_all(bytes)?;
     // On the disk before it has the name: after a power cut there is the old file or the new one, not an empty one.
     file.as_file().sync_all()?;
@@ -45,7 +117,7 @@ fn prefix(path: &Path) -> OsString {
 }
 
 /// A new file that nobody takes for a left one: it is locked, and still there after that.
-fn temporary(folder: &Path, prefix: &OsStr) -> std::io::Result<NamedTempFile> {
+fn temporary(folder: &Path, prefix: &OsStr) -> Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     #[cfg(unix)]
     {
@@ -108,6 +180,39 @@ mod tests {
         let long = "n".repeat(250);
         write_whole(&at(&long), b"long").unwrap();
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), foreign.len() + 2);
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn what_is_replaced_leaves_its_permissions() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("x.kin");
+        let mode = || std::fs::metadata(&path).unwrap().permissions().mode() & 0o777;
+        for wanted in [0o600, 0o644, 0o444, 0o755] {
+            std::fs::write(&path, "older").unwrap();
+            std::fs::set_permissions(&path, std::fs::Permissions::from_mode(wanted)).unwrap();
+            write_whole(&path, b"newer").unwrap();
+            assert_eq!((mode(), std::fs::read(&path).unwrap()), (wanted, b"newer".to_vec()));
+            std::fs::remove_file(&path).unwrap();
+        }
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn only_regular_files_are_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        std::fs::write(at("file"), "text").unwrap();
+        std::os::unix::fs::symlink(at("file"), at("link")).unwrap();
+        std::os::unix::fs::symlink("/dev/zero", at("zeros")).unwrap();
+        assert!(std::process::Command::new("mkfifo").arg(at("pipe")).status().unwrap().success());
+        assert_eq!(read_text(&at("link")).unwrap(), "text");
+        for (name, what) in [("zeros", "a device"), ("pipe", "a pipe"), ("", "a folder")] {
+            let error = read(&at(name)).unwrap_err().to_string();
+            assert!(error.contains(what) && error.contains("expected a regular file"), "{error}");
+        }
+        assert_eq!(read(&at("gone")).unwrap_err().kind(), ErrorKind::NotFound);
     }
 
     #[test]

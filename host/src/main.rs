@@ -4,12 +4,8 @@ mod commands;
 
 use std::process::ExitCode;
 
-use clap::Parser;
-
-use commands::Cli;
-
 fn main() -> ExitCode {
-    match commands::run(Cli::parse()) {
+    match commands::run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(report) => {
             // One line a cause, for people and for scripts alike.

@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
 
-use crate::clip::{self, Clip, JointMap, ReadError, ReadOptions, ResampleError};
+use crate::clip::{self, Canonical, Clip, JointMap, NoteLog, ReadError, ReadOptions, ResampleError};
+use crate::files;
 use crate::pack::InputFile;
 use crate::retarget::{RetargetError, retarget};
-use crate::rig::{Rig, RigError};
+use crate::rig::{MAX_JOINTS, Rig, RigError};
 
 /// Why a clip cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -44,9 +45,14 @@ pub enum PrepareError {
         /// The cause.
         error: RetargetError,
     },
-    /// The frame rate is out of range.
-    #[error(transparent)]
-    Resample(#[from] ResampleError),
+    /// The frame rate is out of range, or there would be too many frames.
+    #[error("{}: {error}", path.display())]
+    Resample {
+        /// The file.
+        path: PathBuf,
+        /// The cause.
+        error: ResampleError,
+    },
     /// Too short to learn from or to play.
     #[error("{}: {found} frames at {fps} fps are too few, expected at least {MIN_FRAMES}", path.display())]
     TooShort {
@@ -71,19 +77,24 @@ pub struct Source {
     pub clip: Clip,
     /// Which joint is which.
     pub map: JointMap,
+    /// Where notes are gathered.
+    pub log: Option<&'static NoteLog>,
 }
 
 impl Source {
     /// Reads a clip; its joints must be known, by name or through the options' map.
     pub fn read(path: &Path, options: &ReadOptions) -> Result<Self, PrepareError> {
         let clip = clip::read_with(path, options)?;
-        let named = options.map.as_ref().and_then(|map| map.resolve(&clip.skeleton).ok());
-        let map = named.or_else(|| JointMap::detect(&clip.skeleton));
+        let (clip, note) = fewer_joints(clip, options);
+        if let (Some(note), Some(log)) = (note, options.log) {
+            log.add(path, &[note]);
+        }
+        let map = JointMap::choose(&clip.skeleton, options.map.as_ref()).ok().flatten();
         let map = map.ok_or_else(|| PrepareError::UnknownSkeleton {
             path: path.to_owned(),
             joints: clip.skeleton.joints.iter().map(|j| j.name.as_str()).collect::<Vec<_>>().join(", "),
         })?;
-        Ok(Self { path: path.to_owned(), clip, map })
+        Ok(Self { path: path.to_owned(), clip, map, log: options.log })
     }
 
     /// A rig of this clip's skeleton.
@@ -93,11 +104,17 @@ impl Source {
 
     /// The motion on a rig, at a frame rate.
     pub fn on_rig(&self, rig: &Rig, fps: f64) -> Result<Clip, PrepareError> {
-        let clip = self.clip.resample(fps)?;
+        let refuse = |error| PrepareError::Resample { path: self.path.clone(), error };
+        let clip = self.clip.resample(fps).map_err(refuse)?;
         if clip.frames() < MIN_FRAMES {
             return Err(PrepareError::TooShort { path: self.path.clone(), found: clip.frames(), fps });
         }
-        retarget(&clip, &self.map, rig).map_err(|error| PrepareError::Retarget { path: self.path.clone(), error })
+        let moved = retarget(&clip, &self.map, rig)
+            .map_err(|error| PrepareError::Retarget { path: self.path.clone(), error })?;
+        if let Some(log) = self.log {
+            log.add(&self.path, moved.notes.get(clip.notes.len()..).unwrap_or(&[]));
+        }
+        Ok(moved)
     }
 
     /// Name for reports: the path as given.
@@ -106,9 +123,29 @@ impl Source {
     }
 }
 
+/// A clip with more joints than a rig holds, with those alone on which a canonical joint hangs.
+fn fewer_joints(clip: Clip, options: &ReadOptions) -> (Clip, Option<String>) {
+    let joints = clip.skeleton.len();
+    let Some(map) =
+        JointMap::choose(&clip.skeleton, options.map.as_ref()).ok().flatten().filter(|_| joints > MAX_JOINTS)
+    else {
+        return (clip, None);
+    };
+    let mut keep = vec![false; joints];
+    for joint in Canonical::ALL.iter().filter_map(|c| map.joint(*c)) {
+        keep[joint] = true;
+    }
+    let fewer = clip.with_joints(&mut keep);
+    let note = format!(
+        "{joints} joints are more than the {MAX_JOINTS} of a rig: {} that no canonical joint hangs on are left out.",
+        joints - fewer.skeleton.len()
+    );
+    (fewer, Some(note))
+}
+
 /// Path and hash of a training file, for the provenance.
 pub fn fingerprint(path: &Path) -> Result<InputFile, std::io::Error> {
-    let bytes = std::fs::read(path)?;
+    let bytes = files::read(path)?;
     let sha256 = Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
     Ok(InputFile { path: path.display().to_string(), sha256 })
 }

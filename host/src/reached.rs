@@ -38,6 +38,11 @@ impl<'k> Reached<'k> {
         Ok(Self { inner: Mutex::new(Inner { done, keep: Some(keep) }) })
     }
 
+    /// Refuses what an earlier run has kept unless every step, by name and result, could be one of this training.
+    pub fn check(&self, fits: impl Fn(&str, &[f64]) -> bool) -> Result<(), Unreadable> {
+        if self.lock().done.iter().all(|(name, result)| fits(name, result)) { Ok(()) } else { Err(Unreadable) }
+    }
+
     /// The result of the step `name`: as it is known, or from `work`.
     pub fn once<E>(&self, name: &str, work: impl FnOnce() -> Result<Vec<f64>, E>) -> Result<Vec<f64>, E> {
         if let Some(known) = self.lock().done.get(name) {

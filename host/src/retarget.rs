@@ -6,6 +6,7 @@ use kinesic::Skeleton as DeviceSkeleton;
 use kinesic::pose::{World, forward, solve};
 use nalgebra::{UnitQuaternion, Vector3};
 
+use crate::clip::solve::turn;
 use crate::clip::{Canonical, Clip, JointMap, Skeleton};
 use crate::rig::{MAX_JOINTS, Rig};
 
@@ -28,24 +29,86 @@ pub enum RetargetError {
 
 /// The clip's motion on the rig's skeleton, frame for frame.
 ///
-/// Where the joints are the same (by name and parent), rotations are copied; else every bone of the rig takes the direction
-/// that the clip's joints have, found through the two joint maps. The root's path is scaled by the length of the legs.
+/// Where the skeletons are equal (names, parents and directions of the bones), rotations are copied. Where names and parents are the same
+/// and the rest pose is another, every rotation is corrected by what turns the rig's bones into the clip's, tips included. Else every bone
+/// of the rig takes the direction that the clip's joints have, found through the two joint maps. The root's path is that of the pelvis,
+/// scaled by the length of the legs.
 pub fn retarget(clip: &Clip, map: &JointMap, rig: &Rig) -> Result<Clip, RetargetError> {
     let scale = leg_length(&rig.skeleton, &rig.map) / leg_length(&clip.skeleton, map);
     // Legs that differ by less than a tenth of a millimetre in a metre are the same legs.
     let scale = if scale.is_finite() && (scale - 1.0).abs() > 1e-4 { scale } else { 1.0 };
-    let root = clip.root.iter().map(|p| p * scale).collect();
-    let rotations = if same_joints(&clip.skeleton, &rig.skeleton) {
+    let pelvis = map.joint(Canonical::Pelvis).filter(|&p| p > 0 && rig.map.joint(Canonical::Pelvis) == Some(0));
+    let root = match pelvis {
+        Some(pelvis) => (0..clip.frames()).map(|f| clip.positions(f)[pelvis] * scale).collect(),
+        None => clip.root.iter().map(|p| p * scale).collect(),
+    };
+    let mut notes = clip.notes.clone();
+    let rotations = if !same_joints(&clip.skeleton, &rig.skeleton) {
+        Bones::new(clip, map, rig)?.rotations(clip)
+    } else if same_rest(&clip.skeleton, &rig.skeleton) {
         clip.rotations.clone()
     } else {
-        Bones::new(clip, map, rig)?.rotations(clip)
+        notes
+            .push("The rest pose differs from the pack's: directions of bones were transferred, not rotations.".into());
+        corrected(clip, &rig.skeleton)
     };
-    Ok(Clip { skeleton: rig.skeleton.clone(), frame_time: clip.frame_time, root, rotations, notes: clip.notes.clone() })
+    Ok(Clip { skeleton: rig.skeleton.clone(), frame_time: clip.frame_time, root, rotations, notes })
 }
 
 fn same_joints(a: &Skeleton, b: &Skeleton) -> bool {
     a.joints.len() == b.joints.len()
         && a.joints.iter().zip(&b.joints).all(|(a, b)| a.name == b.name && a.parent == b.parent)
+}
+
+/// Bones of two skeletons that differ in direction by less rest alike, rad.
+const ALIKE: f64 = 2e-3;
+/// Bones shorter than this have no direction, m.
+const NO_BONE: f64 = 1e-4;
+
+/// Whether the bones of two skeletons with the same joints point the same way at rest.
+fn same_rest(a: &Skeleton, b: &Skeleton) -> bool {
+    let alike = |a: &Vector3<f64>, b: &Vector3<f64>| a.norm() < NO_BONE || b.norm() < NO_BONE || a.angle(b) < ALIKE;
+    a.joints
+        .iter()
+        .zip(&b.joints)
+        .all(|(a, b)| alike(&a.offset, &b.offset) && a.end.zip(b.end).is_none_or(|(a, b)| alike(&a, &b)))
+}
+
+/// Rotations that lay the rig's bones where the clip's are: `G_rig = G_clip A`, where `A` turns the rig's bones at a joint into the clip's
+/// by the smallest turn. A joint without bones goes with its parent.
+fn corrected(clip: &Clip, rig: &Skeleton) -> Vec<UnitQuaternion<f64>> {
+    let mut turns: Vec<UnitQuaternion<f64>> = Vec::new();
+    for (index, joint) in rig.joints.iter().enumerate() {
+        let own = &clip.skeleton.joints;
+        let tips = joint.end.zip(own[index].end);
+        let bones = rig.children(index).map(|c| (rig.joints[c].offset, own[c].offset)).chain(tips);
+        let pairs: Vec<_> = bones.filter(|(a, b)| a.norm() > NO_BONE && b.norm() > NO_BONE).collect();
+        let above = joint.parent.map_or_else(UnitQuaternion::identity, |p| turns[p]);
+        // From the parent's turn on: a straight limb that hangs otherwise turns as a whole.
+        let started: Vec<_> = pairs.iter().map(|(a, b)| (above * a, *b)).collect();
+        turns.push(if pairs.is_empty() { above } else { nearest(&pairs, &started, above) });
+    }
+    let n = rig.len();
+    let mut out = Vec::with_capacity(clip.rotations.len());
+    for frame in 0..clip.frames() {
+        for (index, local) in clip.pose(frame).iter().enumerate().take(n) {
+            let above = rig.joints[index].parent.map_or_else(UnitQuaternion::identity, |p| turns[p]);
+            out.push(above.inverse() * local * turns[index]);
+        }
+    }
+    out
+}
+
+/// The turn of a joint: none where its own bones rest alike, else what its parent's turn leaves to do.
+fn nearest(
+    pairs: &[(Vector3<f64>, Vector3<f64>)],
+    started: &[(Vector3<f64>, Vector3<f64>)],
+    above: UnitQuaternion<f64>,
+) -> UnitQuaternion<f64> {
+    match pairs.iter().all(|(a, b)| a.angle(b) < ALIKE) {
+        true => UnitQuaternion::identity(),
+        false => turn(started) * above,
+    }
 }
 
 /// Thighs and shins of both legs, m.

@@ -13,6 +13,16 @@ pub fn vectorised<W: Work>(work: W) -> W::Output {
     pulp::Arch::new().dispatch(work)
 }
 
+/// An eigenvector with the sign by which its largest entry is positive. Either sign is one; which one a library finds depends on the
+/// instructions of the machine.
+pub fn oriented(mut vector: Vec<f64>) -> Vec<f64> {
+    let largest = vector.iter().fold(0.0f64, |largest, x| if x.abs() > largest.abs() { *x } else { largest });
+    if largest < 0.0 {
+        vector.iter_mut().for_each(|x| *x = -*x);
+    }
+    vector
+}
+
 /// `a' b` over the shorter length, summed in eight lanes: the same bits with vectors of any width.
 #[inline(always)]
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
@@ -42,6 +52,13 @@ pub fn line(points: &[(f64, f64)]) -> Option<(f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn both_signs_of_a_vector_become_one() {
+        let vector = vec![0.1, -0.7, 0.3];
+        assert_eq!(oriented(vector.clone()), [-0.1, 0.7, -0.3]);
+        assert_eq!(oriented(vector.iter().map(|x| -x).collect()), oriented(vector));
+    }
 
     #[test]
     fn a_line_through_points() {

@@ -3,7 +3,7 @@
 mod align_common;
 
 use align_common::{Gait, noise};
-use kinesic_host::align::{AlignError, Ends, Series, aligned_distance, aligned_rms};
+use kinesic_host::align::{AlignError, Ends, Series, aligned, aligned_distance, aligned_rms};
 
 fn series(data: &[f64], channels: usize) -> Series<'_> {
     Series::new(data, channels).expect("whole frames")
@@ -81,4 +81,25 @@ fn one_frame_is_enough_and_none_is_not() {
     ));
     let p = noise(4, 4, false, 1);
     assert_eq!(aligned_rms(series(&p, 4), series(&p, 4)), Err(AlignError::NotPositions { channels: 4 }));
+}
+
+#[test]
+fn the_path_is_the_one_that_was_measured() {
+    let mut gait = Gait::new(9, 3);
+    let p = gait.clip((0..60).map(f64::from), 0.0);
+    let q = gait.clip((7..50).map(|t| f64::from(t) * 1.1), 0.3);
+    for ends in [Ends::Closed, Ends::Open { max_fraction: 0.2 }] {
+        let alone = aligned_distance(series(&p, 9), series(&q, 9), ends).expect("positions");
+        let (found, path) = aligned(series(&p, 9), series(&q, 9), ends).expect("positions");
+        assert_eq!(found, alone);
+        assert_eq!(path.len(), found.path_len);
+        let steps = path.windows(2).map(|pair| (pair[1].0 - pair[0].0, pair[1].1 - pair[0].1));
+        assert!(steps.into_iter().all(|step| matches!(step, (1, 0) | (0, 1) | (1, 1))));
+        let square = |(i, j): &(usize, usize)| (0..9).map(|c| (p[9 * i + c] - q[9 * j + c]).powi(2)).sum::<f64>();
+        let rms = (path.iter().map(square).sum::<f64>() / (3 * path.len()) as f64).sqrt();
+        assert!((rms - found.rms).abs() < 1e-5 * rms, "{rms} {found:?}");
+        let left_out = path[0].0 + path[0].1 + (59 - path[path.len() - 1].0) + (42 - path[path.len() - 1].1);
+        assert_eq!(left_out, found.unmatched, "{ends:?}");
+        assert_eq!(ends == Ends::Closed, left_out == 0);
+    }
 }

@@ -169,14 +169,14 @@ fn every_training_writes_a_report_beside_its_pack() {
     let read = |name: &str| std::fs::read_to_string(at.join(name)).unwrap();
     succeed(&["train", "translate", "--pair", "neutral.bvh", "weary.bvh", "--out", "a.kin"], at);
     let page = read("a.report.html");
-    for part in ["doing nothing", "<svg", "polyline", "Translator::&lt;19", "neutral.bvh", "kinesic train translate"] {
+    for part in ["doing nothing", "<svg", "polyline", "Translator::&lt;", "neutral.bvh", "kinesic train translate"] {
         assert!(page.contains(part), "no {part} in the report of translate");
     }
     succeed(
         &["train", "components", "--content", "neutral.bvh", "--style", "weary.bvh", "-k", "8", "--out", "c.kin"],
         at,
     );
-    for part in ["largest bone error", "<svg", "polyline", "weary.bvh"] {
+    for part in ["result to style clip", "<svg", "polyline", "weary.bvh"] {
         assert!(read("c.report.html").contains(part), "no {part} in the report of components");
     }
     let clips = ["neutral.bvh", "unseen.bvh", "expected.bvh"];

@@ -158,7 +158,8 @@ fn person(scale: f64, z_up: bool) -> String {
 
 #[test]
 fn units_are_found_from_the_leg() {
-    for unit in Unit::ALL {
+    // A figure of MikuMikuDance has the size of a child of the CMU database: --units says it.
+    for unit in Unit::ALL.into_iter().filter(|unit| *unit != Unit::Mmd) {
         let clip = parse_with(&person(1.0 / unit.metres(), false), ReadOptions::default());
         assert!((clip.skeleton.joints[11].offset.y + 0.4).abs() < 1e-6, "{unit}: {:?}", clip.notes);
         assert!(clip.notes[0].starts_with(&format!("Units: {unit} assumed")), "{:?}", clip.notes);

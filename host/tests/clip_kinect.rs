@@ -122,14 +122,14 @@ fn broken_recordings_are_refused_by_line_and_column() {
             .collect::<String>();
     let cases: Vec<(String, &[&str])> = vec![
         (String::new(), &["is empty", "Timestamp"]),
-        (edit(1, 0, "Time"), &["line 1", "'Timestamp' is missing"]),
+        (edit(1, 0, "Stamp"), &["line 1", "'Timestamp' is missing"]),
         (edit(1, 12, "Head_Z"), &["line 1", "'HeadZ' is missing"]),
         (edit(3, 6, "1.O2"), &["line 3", "'SpineZ'", "'1.O2' is not a number"]),
         (edit(3, 0, ""), &["line 3", "'Timestamp'"]),
         (edit(4, 0, "36914937.5"), &["line 4", "goes back to 36914937.5", "36914968.025"]),
         (edit(4, 0, "noon"), &["line 4", "'Timestamp'", "noon"]),
         (edit(9, 0, "1e12"), &["more than a day", "milliseconds"]),
-        (all_nan, &["line 2", "'SpineZ'", "missing"]),
+        (all_nan, &["'Spine' has no value in any row"]),
         (lines[..2].join("\n"), &["only 1 frame", "at least 2"]),
         (lines[..1].join("\n"), &["only 0 frame"]),
         (format!("{}\n1,2,3\n", lines[..3].join("\n")), &["line 4", "3 cells, expected at least 61"]),

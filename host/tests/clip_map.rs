@@ -108,7 +108,7 @@ fn broken_maps_are_refused_by_key() {
         ("[joints]\npelvis = 3", &["'pelvis' is of type integer", "text in quotes"]),
         ("[joints]\nhead = \"Head\"", &["no pelvis"]),
         ("units = \"yard\"\n[joints]\npelvis = \"Hips\"", &["'units'", "'yard'", "inch"]),
-        ("up = \"w\"\n[joints]\npelvis = \"Hips\"", &["'up'", "'w'", "y or z"]),
+        ("up = \"w\"\n[joints]\npelvis = \"Hips\"", &["'up'", "'w'", "x, y, z, -x, -y or -z"]),
         ("units = 1\n[joints]\npelvis = \"Hips\"", &["'units' is of type integer"]),
     ];
     for (text, parts) in cases {

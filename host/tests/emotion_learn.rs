@@ -2,17 +2,22 @@
 
 use std::path::Path;
 
+use kinesic::Pose;
 use kinesic_host::clip::{JointMap, ReadOptions};
 use kinesic_host::emotion::evaluate::{Scorer, evaluate, mean};
+use kinesic_host::emotion::features::features;
+use kinesic_host::emotion::keyframes::Keyframes;
 use kinesic_host::emotion::labels::{self, Attribute, Labelled};
 use kinesic_host::emotion::motions::{self, Example};
 use kinesic_host::emotion::play::{Settings, play};
 use kinesic_host::emotion::segment::{Cut, FRAME_RATE, cut};
-use kinesic_host::emotion::{TrainError, TrainOptions, Trained, spearman, train};
+use kinesic_host::emotion::{TrainError, TrainOptions, Trained, train};
 use kinesic_host::gait::{Manner, skeleton, walk};
+use kinesic_host::learn::spearman;
 use kinesic_host::pack::{PackFile, Provenance};
-use kinesic_host::rig::Rig;
+use kinesic_host::rig::{MAX_JOINTS, Rig};
 use kinesic_tests::{data, table};
+use nalgebra::{UnitQuaternion, Vector4};
 
 fn rig() -> Rig {
     let skeleton = skeleton();
@@ -50,8 +55,8 @@ fn trained() -> Trained {
     train(&rig(), "walk", &["weary".to_owned()], &examples(&LEVELS, 1), &TrainOptions::default()).unwrap()
 }
 
-fn packed(rig: &Rig, trained: &Trained) -> PackFile {
-    PackFile::from_bytes(&trained.model.pack(rig, &Provenance::default()))
+fn packed(trained: &Trained) -> PackFile {
+    PackFile::from_bytes(&trained.model.pack(&trained.rig, &Provenance::default()))
 }
 
 #[test]
@@ -59,7 +64,7 @@ fn unseen_walks_are_read_and_what_is_asked_for_is_played() {
     let trained = trained();
     assert_eq!(trained.cut, Cut::Cycles);
     assert!(trained.keyframe_error < 0.02 && trained.network_error < 0.05, "{trained:?}");
-    let file = packed(&rig(), &trained);
+    let file = packed(&trained);
     let pack = file.pack().unwrap();
     let scorer = Scorer::load(&pack).unwrap();
     let others = examples(&[0.1, 0.25, 0.4, 0.6, 0.75, 0.9], 50);
@@ -82,23 +87,58 @@ fn unseen_walks_are_read_and_what_is_asked_for_is_played() {
 }
 
 #[test]
-fn the_device_scores_as_the_training_did() {
-    let (rig, trained) = (rig(), trained());
-    let file = packed(&rig, &trained);
+fn a_pack_reads_as_the_training_did() {
+    let trained = trained();
+    let file = packed(&trained);
     let pack = file.pack().unwrap();
     let scorer = Scorer::load(&pack).unwrap();
     let clip = &examples(&LEVELS, 1)[4].clip;
-    let device = scorer.read(clip);
-    for (motion, device) in cut(&rig, clip, Cut::Cycles).iter().zip(&device) {
-        let coordinates = scorer.coordinates(motion).unwrap();
-        let sum: f64 = trained.model.rank.iter().zip(&coordinates).map(|(w, x)| w * x).sum();
-        assert!((sum + trained.model.rank_bias[0] - device[0]).abs() < 1e-3, "{sum} {device:?}");
+    let reading = &trained.model.reading;
+    let keyframes = Keyframes { parts: reading.parts.clone(), postures: reading.postures.clone() };
+    let read = scorer.read(clip);
+    assert!(!read.is_empty());
+    for (motion, read) in cut(&rig(), clip, Cut::Cycles).iter().zip(&read) {
+        let features = features(motion, &keyframes).unwrap();
+        let sum: f64 = reading.rank.iter().zip(&features).map(|(w, x)| w * x).sum();
+        assert!((sum + reading.bias[0] - read[0]).abs() < 1e-3, "{sum} {read:?}");
     }
+    // A whole clip of known weariness is read about so.
+    assert!((mean(&read)[0] - 0.5).abs() < 0.15, "{read:?}");
+}
+
+/// The network's motions turn heads, hands and twists as the clips do: no joint is left where it was.
+#[test]
+fn every_joint_that_turns_in_the_clips_turns_with_the_strength() {
+    let trained = trained();
+    let file = packed(&trained);
+    let pack = file.pack().unwrap();
+    let mean_turn = |poses: &[Pose<MAX_JOINTS>], others: &[Pose<MAX_JOINTS>], joint: usize| {
+        let sum = |poses: &[Pose<MAX_JOINTS>]| {
+            let first = poses[0].rotations[joint];
+            let sign = |q: &UnitQuaternion<f32>| if q.coords.dot(&first.coords) < 0.0 { -q.coords } else { q.coords };
+            poses.iter().map(|pose| sign(&pose.rotations[joint])).fold(Vector4::zeros(), |a, b| a + b)
+        };
+        let [a, b] = [sum(poses), sum(others)].map(|sum| UnitQuaternion::new_normalize(sum.into()));
+        a.angle_to(&b).to_degrees()
+    };
+    let played = [0.0, 1.0].map(|strength| {
+        let asked = [strength, 0.0, 0.0, 0.0];
+        play(&pack, &Settings { from: asked, to: asked, fps: FRAME_RATE, seconds: None }).unwrap().poses
+    });
+    let rig = rig();
+    let clips = [0.0, 1.0].map(|weary| rig.poses(&walk(&manner(weary), 8.0, FRAME_RATE, 0.1, 77)));
+    let mut turned = 0;
+    for joint in 1..rig.joints() {
+        let [made, real] = [&played, &clips].map(|[from, to]| mean_turn(from, to, joint));
+        assert!((made - real).abs() < 1.5 + 0.15 * real, "joint {joint}: {made} of {real} degrees");
+        turned += usize::from(real > 3.0);
+    }
+    assert!(turned >= 3, "{turned} joints turn");
 }
 
 #[test]
 fn the_same_seed_gives_the_same_bytes() {
-    assert!(packed(&rig(), &trained()).bytes() == packed(&rig(), &trained()).bytes());
+    assert!(packed(&trained()).bytes() == packed(&trained()).bytes());
 }
 
 #[test]
@@ -212,7 +252,7 @@ fn known_blend_weights_of_real_walks_are_read() {
     let (rig, between) = real(&folder, between, Some(rig));
     let names = ["angry".to_owned(), "sad".to_owned()];
     let trained = train(&rig, "walk", &names, &known, &TrainOptions::default()).unwrap();
-    let file = packed(&rig, &trained);
+    let file = packed(&trained);
     let pack = file.pack().unwrap();
     let report = evaluate(&Scorer::load(&pack).unwrap(), &between);
     println!("{report:?}");
@@ -245,7 +285,7 @@ fn styles_of_unseen_takes_are_put_in_order() {
         let (rig, held) = real(&folder, held, Some(rig));
         let trained = train(&rig, action, std::slice::from_ref(&order.name), &kept, &TrainOptions::default()).unwrap();
         assert_eq!(trained.cut, cut, "{action}");
-        let file = packed(&rig, &trained);
+        let file = packed(&trained);
         let pack = file.pack().unwrap();
         let report = evaluate(&Scorer::load(&pack).unwrap(), &held);
         println!("{action}: {report:?}");

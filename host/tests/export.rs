@@ -1,11 +1,19 @@
 //! Exports, read back by others than ourselves.
 
+#[path = "../../tests/tests/common/hostile.rs"]
+mod hostile;
+
 use std::path::Path;
 use std::process::Command;
 
+use hostile::Hostile;
 use kinesic_host::clip::{self, Clip};
+use kinesic_host::face::made;
+use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_tests::{data, table};
 use nalgebra::{Matrix4, Point3, Quaternion, Translation3, UnitQuaternion, Vector3};
+use rand::SeedableRng;
+use rand::rngs::ChaCha8Rng;
 
 fn succeed(args: &[&str], folder: &Path) -> String {
     let output = Command::new(env!("CARGO_BIN_EXE_kinesic")).args(args).current_dir(folder).output().unwrap();
@@ -206,8 +214,19 @@ fn a_pack_as_rust_source_compiles_to_the_same_bytes() {
     std::fs::copy(models.join("mechanics.kin"), at.join("mechanics.kin")).unwrap();
     let train = ["train", "components", "--content", "neutral.bvh", "--style", "weary.bvh", "-k", "8"];
     succeed(&[&train[..], &["--no-report", "--out", "components.kin"]].concat(), at);
-    let cases: [(&str, &[&str]); 3] = [
-        ("weary.kin", &["JOINTS", "STATES"]),
+    // Two translators, and two engines that have units.
+    let pack = |name: &str| PackFile::read(&at.join(name)).unwrap();
+    let mut two = Hostile::of(&pack("weary.kin"));
+    two.models.push(two.models[0]);
+    std::fs::write(at.join("two.kin"), two.bytes()).unwrap();
+    let mut mixed = Hostile::of(&pack("mechanics.kin"));
+    let faces = made::model(2, 3, &mut ChaCha8Rng::seed_from_u64(3)).pack(&Provenance::default());
+    mixed.add(&PackFile::from_bytes(&faces));
+    std::fs::write(at.join("mixed.kin"), mixed.bytes()).unwrap();
+    let cases: [(&str, &[&str]); 5] = [
+        ("two.kin", &["JOINTS", "STATES", "ROWS"]),
+        ("mixed.kin", &["JOINTS", "UNITS", "WINDOW", "FACE_UNITS"]),
+        ("weary.kin", &["JOINTS", "STATES", "ROWS"]),
         ("mechanics.kin", &["JOINTS", "UNITS", "WINDOW"]),
         ("components.kin", &["JOINTS", "COMPONENTS"]),
     ];
@@ -230,8 +249,10 @@ fn a_pack_as_rust_source_compiles_to_the_same_bytes() {
         assert_eq!(numbers[0], joints, "{name}");
         let model = &json["models"][0];
         match name {
-            "weary.kin" => assert_eq!(model["capacity"], format!("Translator::<{}, {}>", numbers[0], numbers[1])),
-            "mechanics.kin" => {
+            "weary.kin" | "two.kin" => {
+                assert_eq!(model["capacity"], format!("Translator::<{}, {}>", numbers[2], numbers[1]))
+            }
+            "mechanics.kin" | "mixed.kin" => {
                 let units = |layer: &str| model[layer].as_u64().unwrap().next_multiple_of(4) as usize;
                 assert_eq!(numbers[1], units("hidden") + units("code"));
                 assert_eq!(numbers[2], 20);

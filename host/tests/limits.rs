@@ -3,15 +3,15 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
-use kinesic::limit::{JointKind, LimitState};
-use kinesic::model::LimitsMeta;
+use kinesic::rig::JointKind;
 use kinesic::{Pipeline, PipelineState, Pose};
 use kinesic_host::clip::{JointMap, WriteOptions};
 use kinesic_host::gait::{self, Manner, walk};
 use kinesic_host::limit::robot::{Import, Rates, Robot, RobotError, RobotMap, import};
 use kinesic_host::limit::{HostLimiter, JointLimit, LimitsModel};
-use kinesic_host::pack::PackFile;
-use kinesic_host::rig::{MAX_JOINTS, Rig};
+use kinesic_host::pack::{PackFile, Provenance};
+use kinesic_host::rig::{MAX_JOINTS, MAX_ROWS, Rig};
+use kinesic_host::translate::{FormChoice, HostTranslator, TrainOptions, TrainPair, train};
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 
 const KINESIC: &str = env!("CARGO_BIN_EXE_kinesic");
@@ -87,9 +87,9 @@ fn link(robot: &Robot, name: &str, angle: &dyn Fn(&str) -> f64) -> UnitQuaternio
 
 /// Local rotation of a limit's coordinates.
 fn local(limit: &JointLimit, angles: &[f64]) -> UnitQuaternion<f64> {
-    let [i, j, k, w] = limit.neutral.map(f64::from);
-    let neutral = UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(w, i, j, k));
-    angles.iter().zip(limit.axes).fold(neutral, |q, (angle, axis)| {
+    let [i, j, k, w] = limit.coordinates.reference.map(f64::from);
+    let reference = UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(w, i, j, k));
+    angles.iter().zip(limit.coordinates.axes).fold(reference, |q, (angle, axis)| {
         q * UnitQuaternion::from_scaled_axis(Vector3::from(axis).cast::<f64>() * *angle)
     })
 }
@@ -100,7 +100,7 @@ fn servo_angles_turn_the_skeleton_as_they_turn_the_robot() {
     let Import { model, urdf, .. } = made(URDF, MAP).unwrap();
     let skeleton = gait::skeleton();
     let arm = joint("LeftArm");
-    assert_eq!(model.joints[arm].kind, JointKind::Chain);
+    assert_eq!(model.joints[arm].coordinates.kind, JointKind::Chain);
     assert_eq!(urdf[arm], ["l_pitch", "l_roll", "l_yaw"]);
     // Robot: x forward, y left, z up. Skeleton: z forward, x left, y up.
     let to_world = |q: UnitQuaternion<f64>| {
@@ -148,22 +148,22 @@ fn servo_angles_turn_the_skeleton_as_they_turn_the_robot() {
 #[test]
 fn on_the_device_every_angle_is_reached_and_none_passed() {
     let Import { model, urdf, .. } = made(URDF, MAP).unwrap();
-    let tables = model.tables();
-    let limiter = HostLimiter::new(tables.view(), LimitsMeta::default(), 60.0).unwrap();
-    let mut state = LimitState::new();
+    let tables = model.tables(&rig()).unwrap();
+    let pipeline = Pipeline::new(tables.rig().frames(), tables.limiter::<MAX_ROWS>().unwrap()).unwrap();
+    let mut state = PipelineState::new();
     let (mut pose, mut out) = (Pose::<MAX_JOINTS>::identity(), Pose::identity());
+    let first = |name: &str| tables.rig().frames().places().nth(joint(name)).unwrap().1;
     for (wanted, expected) in [([-2.0, 1.0, 0.5], [-2.0, 1.0, 0.5]), ([0.5, -1.0, 0.5], [0.5, -0.3, 0.5])] {
         for (at, names) in urdf.iter().enumerate() {
             let angles = if names.len() == 3 { wanted.to_vec() } else { vec![-0.4; names.len()] };
             pose.rotations[at] = local(&model.joints[at], &angles).cast();
         }
-        for frame in 0..limiter.recovery_frames() {
-            // A frame that never changes would be taken for a frozen one.
-            pose.root.x = 1e-4 * frame as f32;
-            limiter.step(&mut state, Some(&pose), &mut out);
+        for _ in 0..pipeline.engine.recovery_frames() {
+            pipeline.step(&mut state, Some(&pose), &mut out);
         }
-        let found = state.angles(joint("LeftArm"));
+        let found = &state.shown().coordinates()[first("LeftArm")..][..3];
         assert!(found.iter().zip(expected).all(|(x, y): (_, f32)| (x - y).abs() < 1e-4), "{found:?}, {expected:?}");
+        assert!((state.shown().coordinates()[first("LeftForeArm")] + 0.4).abs() < 1e-4);
     }
 }
 
@@ -175,6 +175,7 @@ fn bounds_and_rates_are_the_urdf_s_and_the_tighter_wins() {
     let arm = of("LeftArm");
     assert_eq!((arm.lower, arm.upper, arm.velocity), ([-3.0, -0.3, -1.5], [1.5, 2.9, 1.5], [7.0, 7.0, 8.0]));
     assert_eq!(arm.acceleration, [20.0; 3]);
+    assert_eq!(arm.coordinates.middle.map(|x| (x * 1e4).round()), [-7.5e3, 1.3e4, 0.0]);
     // The gripper is 0.3 - 0.2 x, within 0 .. 0.5, at 1 rad/s.
     let wrist = of("LeftHand");
     assert!(near(wrist.lower[0], -1.0) && near(wrist.upper[0], 1.5) && near(wrist.velocity[0], 5.0), "{wrist:?}");
@@ -183,10 +184,19 @@ fn bounds_and_rates_are_the_urdf_s_and_the_tighter_wins() {
     // The soft limit is the tighter one below, the hard one above.
     assert!(near(of("RightForeArm").lower[0], -2.0) && near(of("RightForeArm").upper[0], 0.0));
     // What is not in the map is free, at the rate of the fastest servo.
-    assert_eq!((of("Head").kind, of("Head").velocity[0]), (JointKind::Free, 8.0f32.max(9.0)));
+    assert!(of("Head").is_free());
+    assert_eq!(of("Head").velocity, [9.0; 3]);
     let fixed = made(URDF, &format!("unmapped = \"fixed\"\n{MAP}")).unwrap().model;
-    assert_eq!((fixed.joints[joint("Head")].kind, fixed.joints[joint("Head")].upper), (JointKind::Hinge, [0.0; 3]));
-    assert_eq!(fixed.joints[0].kind, JointKind::Free);
+    assert_eq!(fixed.joints[joint("Head")].coordinates.kind, JointKind::Fixed);
+    assert!(fixed.joints[0].is_free());
+    // The root stands between the ground and twice its height, unless the map says otherwise.
+    let height = model.height;
+    assert_eq!((height.lower, height.upper, height.velocity), (0.0, 2.0 * height.rest, model.meta.root_velocity));
+    assert!((0.7..1.2).contains(&height.rest), "{height:?}");
+    let map = format!("height = [0.2, 0.5]\nheading_velocity = 3.0\n{MAP}");
+    let low = made(URDF, &map).unwrap().model;
+    assert_eq!((low.height.lower, low.height.upper, low.height.rest), (0.2, 0.5, 0.5));
+    assert_eq!(low.meta.heading_velocity, 3.0);
 }
 
 #[test]
@@ -197,11 +207,27 @@ fn two_hinges_odd_angles_and_whole_turns_are_taken() {
     let straight = swap(URDF, "rpy=\"0 0 0.3\"", "rpy=\"0 0 0.003\"");
     let two = made(&straight, &swap(MAP, "r_elbow =", "r_shoulder = [\"r_pitch\", \"r_roll\"]\nr_elbow =")).unwrap();
     let arm = two.model.joints[joint("RightArm")];
-    assert_eq!((arm.kind, arm.lower[2], arm.upper[2]), (JointKind::Chain, 0.0, 0.0));
+    assert_eq!((arm.coordinates.kind, arm.lower[2], arm.upper[2]), (JointKind::Chain, 0.0, 0.0));
     assert!(two.notes.iter().any(|note| note.contains("axis turned by 0.17 degrees")), "{:?}", two.notes);
     let ball = swap(MAP, "l_shoulder = [", "l_shoulder = { kind = \"ball\", urdf = [");
     let ball = made(URDF, &swap(&ball, "\"l_yaw\"]", "\"l_yaw\"] }")).unwrap();
-    assert_eq!(ball.model.joints[joint("LeftArm")].kind, JointKind::Ball);
+    // Pitch is about the skeleton's x, roll about z, yaw about y; at zero the arm hangs, a quarter turn from rest.
+    let arm = ball.model.joints[joint("LeftArm")];
+    assert_eq!((arm.coordinates.kind, arm.is_free()), (JointKind::Ball, false));
+    let rows: Vec<[f32; 2]> = arm.lower.into_iter().zip(arm.upper).map(<[f32; 2]>::from).collect();
+    let named = |name: &str| rows[ball.urdf[joint("LeftArm")].iter().position(|found| found == name).unwrap()];
+    let either = |found: [f32; 2], [lower, upper]: [f32; 2]| found == [lower, upper] || found == [-upper, -lower];
+    assert!(either(named("l_pitch"), [-3.0, 1.5]) && either(named("l_roll"), [-0.3, 2.9]), "{rows:?}");
+    assert_eq!(named("l_yaw"), [-1.5, 1.5]);
+    one_turn_of_a_ball(&ball, "l_pitch");
+    let skew = swap(
+        &swap(URDF, "<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 0.8 0.6\"/>"),
+        "<axis xyz=\"0 0 1\"/>\n    <limit lower=\"-1.5\"",
+        "<axis xyz=\"0 -0.6 0.8\"/>\n    <limit lower=\"-1.5\"",
+    );
+    let map =
+        swap(&swap(MAP, "l_shoulder = [", "l_shoulder = { kind = \"ball\", urdf = ["), "\"l_yaw\"]", "\"l_yaw\"] }");
+    says(&made(&skew, &map).unwrap_err(), &["l_shoulder", "own axes", "chain"], "skew");
     let turns = made(&swap(URDF, "lower=\"-1\" upper=\"1\"", "lower=\"-6.28\" upper=\"6.28\""), MAP).unwrap();
     let waist = turns.model.joints[joint("Spine")];
     assert!(waist.upper[0] - waist.lower[0] <= std::f32::consts::TAU && waist.lower[0] < -3.1, "{waist:?}");
@@ -225,7 +251,9 @@ fn other_conventions_of_axes_give_the_same_table() {
     let (a, b) = (made(URDF, MAP).unwrap().model, made(&other, &map).unwrap().model);
     for (a, b) in a.joints.iter().zip(&b.joints) {
         let apart = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
-        assert!(apart(a.axes.as_flattened(), b.axes.as_flattened()) < 1e-5 && apart(&a.neutral, &b.neutral) < 1e-5);
+        let (to, from) = (a.coordinates, b.coordinates);
+        assert!(apart(to.axes.as_flattened(), from.axes.as_flattened()) < 1e-5);
+        assert!(apart(&to.reference, &from.reference) < 1e-5);
         assert_eq!((a.lower, a.upper), (b.lower, b.upper));
     }
 }
@@ -259,7 +287,7 @@ fn every_refusal_names_place_cause_and_next_step() {
         ("<axis xyz=\"0 0 1\"/>", "<axis xyz=\"0 0 0\"/>", &["waist", "length zero"]),
         ("<axis xyz=\"0 0 1\"/>", "<axis xyz=\"0 1\"/>", &["waist", "three numbers"]),
         ("name=\"waist\" type=\"revolute\"", "name=\"waist\" type=\"prismatic\"", &["spine", "'waist'", "prismatic"]),
-        ("name=\"waist\" type=\"revolute\"", "name=\"waist\" type=\"fixed\"", &["spine", "'waist'", "is fixed"]),
+        ("name=\"waist\" type=\"revolute\"", "name=\"waist\" type=\"fixed\"", &["spine", "'waist'", "type 'fixed'"]),
     ];
     for (from, to, words) in urdfs {
         let error = made(&swap(URDF, from, to), MAP).unwrap_err();
@@ -269,7 +297,11 @@ fn every_refusal_names_place_cause_and_next_step() {
     says(&error, &["<sdf>", "expected <robot>"], "sdf");
     says(&Robot::parse("").unwrap_err(), &["not XML"], "nothing");
     says(&Robot::parse("<robot name='x'/>").unwrap_err(), &["no joint"], "no joint");
-    let maps: [(&str, &str, &[&str]); 19] = [
+    let maps: [(&str, &str, &[&str]); 23] = [
+        ("acceleration = 20.0", "acceleration = 20.0\nheight = 1", &["height", "found 1", "[0.3, 0.8]"]),
+        ("acceleration = 20.0", "acceleration = 20.0\nheight = [0, 500]", &["height", "refused"]),
+        ("acceleration = 20.0", "acceleration = 20.0\nfrozen = 1", &["frozen", "expected: acceleration"]),
+        ("spine =", "Hips =", &["Hips", "root", "next joint"]),
         ("acceleration = 20.0", "", &["waist", "no acceleration", "--acceleration"]),
         ("acceleration = 20.0", "acceleration = -1", &["acceleration", "-1", "from 0 up"]),
         ("acceleration = 20.0", "acceleration = 0", &["Hips", "acceleration"]),
@@ -306,6 +338,34 @@ fn says(error: &RobotError, words: &[&str], what: &str) {
     assert!(!error.help.is_empty());
 }
 
+/// A pitch of the ball `l_shoulder` is that of the chain.
+fn one_turn_of_a_ball(ball: &Import, name: &str) {
+    let (arm, angle) = (joint("LeftArm"), 0.4);
+    let at = ball.urdf[arm].iter().position(|found| found == name).unwrap();
+    let ball = ball.model.joints[arm];
+    let sign = if ball.lower[at] == -3.0 { 1.0 } else { -1.0 };
+    let mut vector = Vector3::zeros();
+    vector[at] = sign * angle;
+    let turned = local(&ball, &[]) * UnitQuaternion::from_scaled_axis(vector);
+    let chain = made(URDF, MAP).unwrap().model.joints[arm];
+    assert!(turned.angle_to(&local(&chain, &[angle])) < 1e-5);
+}
+
+/// A style pack on a rig.
+fn style(rig: &Rig) -> Vec<u8> {
+    let locals = |manner| rig.locals(&rig.poses(&walk(manner, 3.0, 60.0, 0.0, 1)));
+    let pair = TrainPair {
+        source_name: "neutral".into(),
+        target_name: "weary".into(),
+        source: locals(&Manner::NEUTRAL),
+        target: locals(&Manner::WEARY),
+    };
+    let options =
+        TrainOptions { form: FormChoice::PerJoint, order: Some(2), mirror: Some(false), ..TrainOptions::default() };
+    let trained = train(rig, &[pair], "weary", 60.0, &options, &|_| {}).unwrap();
+    trained.model.pack(rig, &Provenance::default())
+}
+
 fn run(folder: &Path, line: &str) -> Output {
     let output = Command::new(KINESIC).args(line.split(' ')).current_dir(folder).output().unwrap();
     assert!(output.status.success(), "{line}: {}", String::from_utf8_lossy(&output.stderr));
@@ -320,8 +380,8 @@ fn the_command_makes_packs_and_tables() {
     std::fs::write(at.join("map.toml"), MAP).unwrap();
     let bvh = walk(&Manner::NEUTRAL, 2.0, 60.0, 0.0, 1).to_bvh(&WriteOptions::default()).unwrap();
     std::fs::write(at.join("walk.bvh"), bvh).unwrap();
-    let weary = Path::new(env!("CARGO_MANIFEST_DIR")).join("../models/weary.kin");
-    std::fs::copy(&weary, at.join("weary.kin")).unwrap();
+    // A style that knows nothing of the robot.
+    std::fs::write(at.join("weary.kin"), style(&rig())).unwrap();
 
     let expected = made(URDF, MAP).unwrap().model;
     let load = |name: &str| PackFile::read(&at.join(name)).unwrap();
@@ -335,18 +395,32 @@ fn the_command_makes_packs_and_tables() {
     // The bones of a clip are written in text.
     assert_eq!((from_clip.frame_rate, from_clip.joints[10].upper), (50.0, expected.joints[10].upper));
 
+    // Engines keep the coordinates on which they were trained: a style of balls is not limited as hinges.
+    let line = "limits robot.urdf --map map.toml --with weary.kin --out c.kin";
+    let output = Command::new(KINESIC).args(line.split(' ')).current_dir(at).output().unwrap();
+    let text = String::from_utf8_lossy(&output.stderr).replace("\n", " ");
+    assert!(!output.status.success() && !at.join("c.kin").exists());
+    for word in ["weary.kin", "'Spine'", "ball", "hinge", "--limits", "two pipelines"] {
+        assert!(text.contains(word), "no '{word}' in: {text}");
+    }
+
     // Style and limits in one pack: the device takes it whole. Limits put in twice are there once.
-    made("--with weary.kin --out c.kin");
+    std::fs::write(at.join("limited.kin"), style(&expected.rig(&rig()).unwrap())).unwrap();
+    made("--with limited.kin --out c.kin");
     made("--with c.kin --out d.kin --acceleration 10");
     let file = load("d.kin");
     let pack = file.pack().unwrap();
     let models = pack.metadata().models;
     assert_eq!(models.iter().filter(|model| model.limits().is_some()).count(), 1);
-    let pipeline = Pipeline::<19, 1024, 0, 0, 0, 0>::load(&pack).unwrap();
+    let tensors: Vec<&str> = pack.metadata().tensors.iter().map(|tensor| tensor.name).collect();
+    let once = tensors.iter().collect::<std::collections::HashSet<_>>().len();
+    assert_eq!(once, tensors.len(), "{tensors:?}");
+    let pipeline = Pipeline::<(HostTranslator, HostLimiter), MAX_ROWS>::load(&pack).unwrap();
     let mut state = PipelineState::new();
-    let (mut out, source) = (Pose::identity(), Pose::identity());
+    let (mut out, source) = (Pose::<19>::identity(), Pose::identity());
     pipeline.step(&mut state, Some(&source), &mut out);
-    assert_eq!(pipeline.limiter().table().acceleration[joint("LeftArm")], [10.0; 3]);
+    let first = pipeline.rig().places().nth(joint("LeftArm")).unwrap().1;
+    assert_eq!(pipeline.engine.1.table().acceleration[first / 3], [10.0; 3]);
     assert!(file.provenance().unwrap().notes.contains(&"limits of LeftArm: l_pitch, l_roll, l_yaw".to_owned()));
     assert!(out.is_sound(19));
 

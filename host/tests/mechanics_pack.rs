@@ -93,7 +93,8 @@ fn unseen_plain_clips_keep_little_and_are_predicted_better_than_by_regression() 
 #[test]
 fn training_repeats_itself_and_its_pack_predicts_what_the_trainer_measured() {
     let Some(folder) = data("mechanics_pack") else { return };
-    let names = ["cmu31/07_01.bvh", "cmu31/07_02.bvh", "cmu31/08_01.bvh", "cmu31/35_01.bvh", "cmu31/05_02.bvh"];
+    // The walks are one person's: another rest pose is a joint that moves, to the trainer alone.
+    let names = ["cmu31/07_01.bvh", "cmu31/07_02.bvh", "cmu31/07_03.bvh", "cmu31/07_04.bvh", "cmu31/05_02.bvh"];
     let (rig, clips) = on_rig(&folder, &names);
     let named: Vec<NamedClip> = names
         .iter()
@@ -172,7 +173,7 @@ fn capacities_and_shapes_are_checked() {
         }
         PackFile::from_bytes(&writer.finish(&Provenance::default()))
     };
-    let load = |file: &PackFile| HostMechanics::load(&file.pack().unwrap()).map(|_| ());
+    let load = |file: &PackFile| file.pack().and_then(|pack| HostMechanics::load(&pack).map(drop));
     assert_eq!(load(&build(|_, _| ())), Ok(()));
     for (name, change) in changes {
         assert!(load(&build(change)).is_err(), "{name}");

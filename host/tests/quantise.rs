@@ -21,7 +21,7 @@ fn unseen(file: &PackFile, manner: &Manner) -> Vec<Pose<MAX_JOINTS>> {
     let clip = walk(manner, 6.0, 60.0, 0.0, 5);
     let map = JointMap::detect(&clip.skeleton).unwrap();
     let fps = f64::from(pack.metadata().frame_rate);
-    rig.poses(&Source { path: PathBuf::from("made"), clip, map }.on_rig(&rig, fps).unwrap())
+    rig.poses(&Source { path: PathBuf::from("made"), clip, map, log: None }.on_rig(&rig, fps).unwrap())
 }
 
 #[test]
@@ -44,7 +44,9 @@ fn an_int16_translator_is_within_a_tenth_of_a_degree() {
     assert_eq!(bytes, to_int16(&file, &Provenance::default()).unwrap());
     let rounded = PackFile::from_bytes(&bytes);
     let clips = [Manner::NEUTRAL, Manner::WEARY].map(|manner| unseen(&file, &manner));
-    let found = translated_difference(&file.pack().unwrap(), &rounded.pack().unwrap(), &clips).unwrap();
+    let (before, after) = (file.pack().unwrap(), rounded.pack().unwrap());
+    let rig = Rig::from_pack(&before).unwrap();
+    let found = translated_difference(&before, &after, &rig, &clips).unwrap();
     println!("{found:?}, {} bytes instead of {}", bytes.len(), file.bytes().len());
     assert!(found.frames > 600 && found.mean_deg > 1e-5 && found.mean_deg < 0.1, "{found:?}");
     assert!(bytes.len() < file.bytes().len());

@@ -6,10 +6,9 @@ mod engines;
 #[path = "common/robot.rs"]
 mod robot;
 
-use std::path::Path;
-
+use engines::{golden, golden_folder};
 use kinesic::model::Kind;
-use kinesic::{LoadError, Pack, Pose, Translator, TranslatorState};
+use kinesic::{LoadError, Pack, Pipeline, PipelineState, Pose, Translator};
 use kinesic_host::components::HostComponents;
 use kinesic_host::emotion::{self, HostEmotion};
 use kinesic_host::face::{HostFace, made};
@@ -20,8 +19,9 @@ use kinesic_host::quantise::{to_int8, to_int16};
 use kinesic_host::translate::{FormChoice, HostTranslator};
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
+use robot::small;
 
-type Device<'a> = Translator<'a, 19, 1024>;
+type Device<'a> = Pipeline<'a, Translator<'a, 20, 1024>, 20>;
 
 /// One file of every kind for every version of the format that was released. Make a new one with
 /// `KINESIC_GOLDEN=write cargo test --release -p kinesic-tests --test packs`, and never overwrite an old one: see
@@ -74,29 +74,21 @@ fn all() -> Vec<(&'static str, PackFile)> {
     names.map(|name| (name, golden(name))).collect()
 }
 
-fn golden(name: &str) -> PackFile {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("packs/v1").join(name);
-    PackFile::read(&path).unwrap_or_else(|error| panic!("{error}"))
-}
-
 #[test]
 fn golden_packs_load_and_step() {
     for (name, form, order) in GOLDEN {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("packs/v1").join(name);
+        let path = golden_folder().join(name);
         if std::env::var("KINESIC_GOLDEN").as_deref() == Ok("write") && !path.exists() {
             std::fs::write(&path, common::pack(form, order).bytes()).unwrap();
         }
         let file = golden(name);
         let pack = file.pack().unwrap();
-        let translator = Device::load(&pack).unwrap();
-        let mut state = TranslatorState::new();
-        let mut styled = Pose::identity();
+        let device = Device::load(&pack).unwrap();
+        let mut state = PipelineState::new();
+        let mut styled = Pose::<19>::identity();
         let rig = common::rig();
         for pose in rig.poses(&common::neutral(3)) {
-            let mut source = Pose::identity();
-            source.root = pose.root;
-            source.rotations.copy_from_slice(&pose.rotations[..19]);
-            translator.step(&mut state, &source, &mut styled);
+            device.step(&mut state, Some(&small(&pose)), &mut styled);
             assert!(styled.rotations.iter().all(|q| (q.norm() - 1.0).abs() < 1e-5), "{name}");
         }
         assert!(styled.root.norm() < 20.0, "{name}: {}", styled.root);
@@ -106,7 +98,7 @@ fn golden_packs_load_and_step() {
 #[test]
 fn golden_packs_of_every_kind_load() {
     for (name, make) in MADE {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("packs/v1").join(name);
+        let path = golden_folder().join(name);
         if std::env::var("KINESIC_GOLDEN").as_deref() == Ok("write") && !path.exists() {
             std::fs::write(&path, make()).unwrap();
         }
@@ -165,7 +157,7 @@ fn refusals_say_why() {
     };
     assert_eq!(changed(&|b| b.truncate(7)), LoadError::TooShort { found: 7, expected: 20 });
     assert_eq!(changed(&|b| b[0] = b'X'), LoadError::NotAPack { found: *b"XNSC" });
-    assert_eq!(changed(&|b| b[4] = 9), LoadError::Version { found: 9, expected: 1 });
+    assert_eq!(changed(&|b| b[4] = 9), LoadError::Version { found: 9, expected: 2 });
     assert_eq!(changed(&|b| b[7] = 9), LoadError::Kind { found: 0x0901 });
     assert!(matches!(changed(&|b| b.truncate(b.len() - 16)), LoadError::Length { .. }));
     assert!(matches!(changed(&|b| *b.last_mut().unwrap() ^= 1), LoadError::Checksum { .. }));
@@ -175,8 +167,8 @@ fn refusals_say_why() {
     assert_eq!(Pack::load(&shifted.bytes()[1..]).unwrap_err(), LoadError::Misaligned { off_by: 1 });
 
     let pack = file.pack().unwrap();
-    let small = Translator::<18, 1024>::load(&pack).unwrap_err();
-    assert_eq!(small, LoadError::Capacity { parameter: "JOINTS", found: 19, capacity: 18 });
-    let small = Translator::<19, 8>::load(&pack).unwrap_err();
+    let small = Translator::<19, 1024>::load(&pack).unwrap_err();
+    assert_eq!(small, LoadError::Capacity { parameter: "ROWS", found: 20, capacity: 19 });
+    let small = Translator::<20, 8>::load(&pack).unwrap_err();
     assert!(matches!(small, LoadError::Capacity { parameter: "STATES", capacity: 8, .. }));
 }

@@ -26,7 +26,7 @@ fn measure(trained_on: &[(PathBuf, PathBuf)], tested_on: &[(PathBuf, PathBuf)], 
     let clips: Vec<_> = tested_on.iter().map(|(a, b)| (clip(a), clip(b))).collect();
     let named: Vec<NamedPair> =
         clips.iter().map(|(a, b)| NamedPair { source: ("source", a), target: ("target", b) }).collect();
-    evaluate(&file.pack().unwrap(), &rig, &trained.baselines, &named).unwrap()
+    evaluate(&file.pack().unwrap(), &rig, &trained.baselines, None, &named).unwrap()
 }
 
 #[test]

@@ -2,9 +2,10 @@
 
 use kinesic::emotion::{Emotion, EmotionState};
 use kinesic::model::ATTRIBUTES;
-use kinesic::{LoadError, Pack, Pose, Skeleton};
+use kinesic::rig::Drift;
+use kinesic::{Frame, LoadError, Pack, Rig, Skeleton};
 
-use crate::JOINTS;
+use crate::ROWS;
 use crate::engine::HostPose;
 
 /// Strengths of all attributes.
@@ -12,11 +13,13 @@ pub type Strengths = [f32; ATTRIBUTES];
 
 const KEYS: usize = 64;
 
-type State = EmotionState<JOINTS, KEYS>;
+type State = EmotionState<ROWS, KEYS>;
 
 /// The emotion model at the host's capacity, what it remembers, and what it remembered at a frame that may come again.
 pub struct Player {
-    model: Emotion<'static, JOINTS, KEYS, 256>,
+    skeleton: Skeleton<'static>,
+    rig: Rig<'static>,
+    model: Emotion<'static, ROWS, KEYS, 256>,
     state: State,
     kept: State,
 }
@@ -24,12 +27,14 @@ pub struct Player {
 impl Player {
     /// At the first keyframe.
     pub fn load(pack: &Pack<'static>) -> Result<Self, LoadError> {
-        Ok(Self { model: Emotion::load(pack)?, state: State::new(), kept: State::new() })
+        let model = Emotion::load(pack)?;
+        let (skeleton, rig) = (Skeleton::load(pack)?, Rig::load(pack)?);
+        Ok(Self { skeleton, rig, model, state: State::new(), kept: State::new() })
     }
 
     /// The skeleton that poses have.
     pub fn skeleton(&self) -> &Skeleton<'static> {
-        self.model.skeleton()
+        &self.skeleton
     }
 
     /// Forgets the past.
@@ -49,9 +54,10 @@ impl Player {
 
     /// The pose now, and the strengths that it plays; then `dt` seconds pass.
     pub fn step(&mut self, strength: &Strengths, dt: f32) -> (HostPose, Strengths) {
-        let mut out = Pose::identity();
+        let (mut frame, mut out) = (Frame::new(), self.rig.rest());
         self.state.strength = *strength;
-        self.model.step(&mut self.state, dt, &mut out);
+        self.model.step(&mut self.state, dt, &mut frame);
+        self.rig.show(&frame, &frame, &mut Drift::new(), &mut out);
         (out, self.state.playing().unwrap_or_default())
     }
 }

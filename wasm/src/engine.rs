@@ -1,11 +1,10 @@
 //! The engines behind one interface. A new engine of core is a variant here, and a row in `host/src/view/assets/engine.js`.
 
-use kinesic::components::{Components, ComponentsState};
+use kinesic::engine::{Controls, Engine as Core};
 use kinesic::mechanics::{BodyMechanics, Decoupled, MechanicsState, Modulation, mix, modulate};
-use kinesic::pose::Controls;
-use kinesic::{LoadError, Pack, Pose, Skeleton, Translator, TranslatorState};
+use kinesic::{Components, Frame, LoadError, Pack, Pipeline, PipelineState, Pose, Rig, Skeleton, Translator};
 
-use crate::JOINTS;
+use crate::{JOINTS, ROWS};
 
 /// A pose at the page's capacity.
 pub type HostPose = Pose<JOINTS>;
@@ -20,9 +19,62 @@ pub struct Engine {
 
 #[allow(clippy::large_enum_variant, reason = "there is one, in static memory")]
 enum Model {
-    Translator { model: Translator<'static, JOINTS, 16_384>, state: TranslatorState<JOINTS, 16_384>, started: bool },
-    Components { model: Components<'static, JOINTS, 256>, state: ComponentsState<JOINTS> },
+    Translator(Playing<Translator<'static, ROWS, 16_384>>),
+    Components(Playing<Components<'static, ROWS, 256>>),
     Mechanics { model: BodyMechanics<'static, JOINTS, 2048, 120>, states: [MechanicsState<JOINTS, 120>; 2] },
+}
+
+/// An engine between pose and pose.
+struct Playing<E: Core<ROWS>> {
+    pipeline: Pipeline<'static, FromFirst<E>, ROWS>,
+    state: PipelineState<(E::State, bool), ROWS>,
+}
+
+impl<E: Core<ROWS>> Playing<E> {
+    fn new(pack: &Pack<'static>, engine: E) -> Result<Self, LoadError> {
+        Ok(Self { pipeline: Pipeline::new(Rig::load(pack)?, FromFirst(engine))?, state: PipelineState::new() })
+    }
+
+    fn reset(&mut self) {
+        self.state = PipelineState::new();
+    }
+
+    fn step(
+        &mut self,
+        source: &HostPose,
+        controls: impl Fn(&mut E::State) -> &mut Controls<ROWS>,
+        strength: f32,
+        mask: &Mask,
+    ) -> HostPose {
+        let (engine, _) = &mut self.state.engine;
+        let to = controls(engine);
+        to.strength = strength;
+        for (joint, weight) in mask.iter().enumerate() {
+            self.pipeline.rig().weigh(joint, *weight, &mut to.mask);
+        }
+        let mut out = Pose::identity();
+        self.pipeline.step(&mut self.state, Some(source), &mut out);
+        out
+    }
+}
+
+/// An engine that starts from the first frame that it sees, as the host plays a clip.
+struct FromFirst<E>(E);
+
+impl<E: Core<ROWS>> Core<ROWS> for FromFirst<E> {
+    type State = (E::State, bool);
+
+    fn start(&self, (state, started): &mut Self::State, frame: &Frame<ROWS>) {
+        self.0.start(state, frame);
+        *started = true;
+    }
+
+    fn step(&self, state: &mut Self::State, frame: &mut Frame<ROWS>) {
+        if !state.1 {
+            self.start(state, frame);
+        }
+        self.0.step(&mut state.0, frame);
+    }
 }
 
 impl Engine {
@@ -31,8 +83,8 @@ impl Engine {
         let translator = Translator::load(pack);
         let components = Components::load(pack);
         let model = match (translator, components) {
-            (Ok(model), _) => Model::Translator { model, state: TranslatorState::new(), started: false },
-            (_, Ok(model)) => Model::Components { model, state: ComponentsState::new() },
+            (Ok(model), _) => Model::Translator(Playing::new(pack, model)?),
+            (_, Ok(model)) => Model::Components(Playing::new(pack, model)?),
             (Err(absent @ LoadError::NoModel { .. }), Err(LoadError::NoModel { .. })) => {
                 let model = BodyMechanics::load(pack).map_err(|error| match error {
                     LoadError::NoModel { .. } => absent,
@@ -53,38 +105,24 @@ impl Engine {
     /// Forgets the past.
     pub fn reset(&mut self) {
         match &mut self.model {
-            Model::Translator { state, started, .. } => {
-                *started = false;
-                state.reset();
-            }
-            Model::Components { state, .. } => *state = ComponentsState::new(),
+            Model::Translator(playing) => playing.reset(),
+            Model::Components(playing) => playing.reset(),
             Model::Mechanics { states, .. } => *states = [MechanicsState::new(); 2],
         }
     }
 
     /// One frame.
     pub fn step(&mut self, source: &HostPose, strength: f32, mask: &Mask) -> HostPose {
-        let mut out = Pose::identity();
         match &mut self.model {
-            Model::Translator { model, state, started } => {
-                state.controls = Controls { strength, mask: *mask };
-                if !*started {
-                    model.start(state, source);
-                    *started = true;
-                }
-                model.step(state, source, &mut out);
-            }
-            Model::Components { model, state } => {
-                state.controls = Controls { strength, mask: *mask };
-                model.step(state, source, &mut out);
-            }
+            Model::Translator(playing) => playing.step(source, |state| &mut state.controls, strength, mask),
+            Model::Components(playing) => playing.step(source, |state| &mut state.controls, strength, mask),
             Model::Mechanics { model, states: [state, _] } => {
-                let mut parts = Decoupled::identity();
+                let (mut parts, mut out) = (Decoupled::identity(), Pose::identity());
                 model.step(state, source, &mut parts);
                 modulate(source, &parts, &Modulation { amount: strength, mask: *mask }, &mut out);
+                out
             }
         }
-        out
     }
 
     /// One frame of body mechanics with another's expression.

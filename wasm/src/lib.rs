@@ -22,6 +22,9 @@ use memory::{Floats as _, Memory, Write as _, memory};
 /// Joints that a pose holds.
 pub const JOINTS: usize = 128;
 
+/// Rows of coordinates: that of the root, and one per joint.
+pub const ROWS: usize = JOINTS + 1;
+
 /// Takes the pack at an address. 0 if it loaded, else the length of the [`message`] that says why not.
 ///
 /// # Safety

@@ -5,7 +5,7 @@
 //! - `factor FOLDER`: factorises those that `FOLDER/wanted.csv` names (motion, components, density): times and supports
 //! - `penalty`: density, error and objective over the sparsity weight
 //! - `explained`: explained content against the number of components used
-//! - `transfer`: distances, bones and jerk of sparse components and PCA, with and without bone and smoothness terms
+//! - `transfer`: distances and jerk of sparse components and PCA, with and without the smoothness term
 //! - `count`: the automatic number of components beside held-out errors
 //! - `learn FOLDER`: 500 steps of Adam, and the matrices for `benches/peers/components.py`
 
@@ -21,8 +21,8 @@ use kinesic_benches::made;
 use kinesic_benches::measure::seconds_a_call;
 use kinesic_host::clip::ReadOptions;
 use kinesic_host::components::{
-    FRAME_RATE, Factors, Motion, Objective, Optimiser, Sparsity, Weights, bone_error, bones, choose, content_distance,
-    gram, jerk, learn, noise, pca, refit, sparse, style_distance,
+    FRAME_RATE, Factors, Motion, Objective, Optimiser, Sparsity, Weights, choose, content_distance, gram, jerk, learn,
+    noise, pca, refit, sparse, style_distance,
 };
 use kinesic_host::prepare::Source;
 use kinesic_host::rig::Rig;
@@ -79,18 +79,25 @@ fn source(name: &str) -> Fallible<Source> {
     Ok(Source::read(&data().join(name), &ReadOptions::default())?)
 }
 
-/// A clip on its own rig.
+/// A clip on its own rig, centred on it.
 fn own(name: &str) -> Fallible<(Rig, Motion)> {
     let source = source(name)?;
     let rig = source.rig()?;
-    let motion = Motion::new(&rig.locals(&rig.poses(&source.on_rig(&rig, FRAME_RATE)?)));
+    let poses = rig.poses(&source.on_rig(&rig, FRAME_RATE)?);
+    let rig = rig.centred(&[&poses]);
+    let motion = Motion::new(&rig, &rig.locals(&poses));
     Ok((rig, motion))
 }
 
-/// Content and style on the content's rig.
+/// Content and style on the content's rig, centred on both.
 fn pair([content, style]: [&str; 2]) -> Fallible<(Rig, Motion, Motion)> {
-    let (rig, motion) = own(content)?;
-    let other = Motion::scaled(&rig.locals(&rig.poses(&source(style)?.on_rig(&rig, FRAME_RATE)?)), motion.scale);
+    let content = source(content)?;
+    let rig = content.rig()?;
+    let content = rig.poses(&content.on_rig(&rig, FRAME_RATE)?);
+    let style = rig.poses(&source(style)?.on_rig(&rig, FRAME_RATE)?);
+    let rig = rig.centred(&[&content, &style]);
+    let motion = Motion::new(&rig, &rig.locals(&content));
+    let other = Motion::scaled(&rig, &rig.locals(&style), motion.deviation);
     Ok((rig, motion, other))
 }
 
@@ -215,12 +222,12 @@ fn explained() -> Fallible<()> {
     Ok(())
 }
 
-/// Means over the pairs, but the largest bone error of all.
+/// Means over the pairs.
 fn transfer() -> Fallible<()> {
     println!(
-        "| K, basis, bone weight, smooth weight | style distance | content distance | mean bone error, % | largest, % | jerk / content's | jerk / style's | steps | seconds |"
+        "| K, basis, smooth weight | style distance | content distance | jerk / content's | jerk / style's | steps | seconds |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|");
     let pairs = PAIRS.into_iter().map(pair).collect::<Fallible<Vec<_>>>()?;
     for count in COUNTS {
         for basis in ["PCA", "sparse"] {
@@ -228,18 +235,16 @@ fn transfer() -> Fallible<()> {
                 "PCA" => pca(motion.values.as_ref(), count),
                 _ => sparse(motion.values.as_ref(), count, &Sparsity::default()).factors,
             };
-            for (bone, smooth) in [(0.0, 0.0), (10.0, 0.0), (10.0, 1.0)] {
-                let weights = Weights { bones: bone, smooth, ..Weights::default() };
-                let mut mean = [0.0f64; 8];
+            for smooth in [0.0, 1.0] {
+                let weights = Weights { smooth, ..Weights::default() };
+                let mut mean = [0.0f64; 6];
                 for (rig, content, style) in &pairs {
-                    let row = transferred(rig, content, style, [factorise(content), factorise(style)], weights)?;
-                    for (index, (mean, value)) in mean.iter_mut().zip(row).enumerate() {
-                        *mean = if index == 3 { mean.max(value) } else { *mean + value / pairs.len() as f64 };
-                    }
+                    let row = transferred(rig, content, style, [factorise(content), factorise(style)], weights);
+                    mean.iter_mut().zip(row).for_each(|(mean, value)| *mean += value / pairs.len() as f64);
                 }
-                let [style, content, bones, largest, own, other, steps, seconds] = mean;
+                let [style, content, own, other, steps, seconds] = mean;
                 println!(
-                    "| {count} {basis} {bone} {smooth} | {style:.3} | {content:.3} | {bones:.2} | {largest:.1} | {own:.2} | {other:.2} | {steps:.0} | {seconds:.2} |"
+                    "| {count} {basis} {smooth} | {style:.3} | {content:.3} | {own:.2} | {other:.2} | {steps:.0} | {seconds:.3} |"
                 );
             }
         }
@@ -248,42 +253,30 @@ fn transfer() -> Fallible<()> {
 }
 
 /// The columns of `transfer` for one pair.
-fn transferred(
-    rig: &Rig,
-    content: &Motion,
-    style: &Motion,
-    [own, wanted]: [Factors; 2],
-    weights: Weights,
-) -> Fallible<[f64; 8]> {
-    let bones = bones(rig);
-    let objective = Objective::new(&own, &wanted, &bones, &content.mean, content.scale, weights);
+fn transferred(rig: &Rig, content: &Motion, style: &Motion, [own, wanted]: [Factors; 2], weights: Weights) -> [f64; 6] {
+    let objective = Objective::new(&own, &wanted, weights);
     let start = Instant::now();
     let learned = learn(&objective, noise(content.channels(), own.count(), 1), &Optimiser::default());
     let seconds = start.elapsed().as_secs_f64();
     let result = Factors { weights: own.weights.clone(), components: learned.components.clone() };
-    let positions = rows(&result.product(), &content.mean, content.scale);
-    let error = bone_error(&positions, content.channels(), &bones);
-    let [jerk, of_content, of_style] = [
-        positions,
-        rows(&content.values, &content.mean, content.scale),
-        rows(&style.values, &style.mean, content.scale),
-    ]
-    .map(|p| jerk(&p, content.channels(), FRAME_RATE));
-    Ok([
+    let [jerk, of_content, of_style] =
+        [(&result.product(), &content.mean), (&content.values, &content.mean), (&style.values, &style.mean)].map(
+            |(values, mean)| jerk(&rig.positions(&rows(values, mean, &content.scale)), 3 * rig.joints(), FRAME_RATE),
+        );
+    [
         style_distance(&wanted.components, &learned.components),
         content_distance(&own.components, &learned.components),
-        error.mean_percent,
-        error.max_percent,
         jerk / of_content,
         jerk / of_style,
         (learned.history.len() - 1) as f64,
         seconds,
-    ])
+    ]
 }
 
-fn rows(values: &Mat<f64>, mean: &[f64], scale: f64) -> Vec<f64> {
+/// Coordinates, row-major.
+fn rows(values: &Mat<f64>, mean: &[f64], scale: &[f64]) -> Vec<f64> {
     let cells = (0..values.nrows()).flat_map(|f| (0..values.ncols()).map(move |c| (f, c)));
-    cells.map(|(f, c)| mean[c] + scale * values[(f, c)]).collect()
+    cells.map(|(f, c)| mean[c] + scale[c] * values[(f, c)]).collect()
 }
 
 /// Weights of a motion on given components, damped as a pack's projection.
@@ -309,7 +302,7 @@ fn held_out(motion: &Motion, count: usize) -> f64 {
         let weights = project(test.as_ref(), &factors.components);
         sum += (&test - weights * factors.components.transpose()).squared_norm_l2();
     }
-    100.0 * motion.scale * (3.0 * sum / (motion.frames() * motion.channels()) as f64).sqrt()
+    100.0 * motion.deviation * (3.0 * sum / (motion.frames() * motion.channels()) as f64).sqrt()
 }
 
 fn count() -> Fallible<()> {
@@ -338,24 +331,15 @@ fn count() -> Fallible<()> {
 
 fn learning(folder: &Path) -> Fallible<()> {
     fs::create_dir_all(folder)?;
-    let (rig, content, style) = pair(PAIRS[1])?;
-    let bones = bones(&rig);
+    let (_, content, style) = pair(PAIRS[1])?;
     let count = 30;
     let own = sparse(content.values.as_ref(), count, &Sparsity::default()).factors;
     let wanted = sparse(style.values.as_ref(), count, &Sparsity::default()).factors;
-    let objective = Objective::new(&own, &wanted, &bones, &content.mean, content.scale, Weights::default());
+    let objective = Objective::new(&own, &wanted, Weights::default());
     let start = noise(content.channels(), count, 1);
-    write_matrix(&folder.join("weights.csv"), own.weights.as_ref())?;
     write_matrix(&folder.join("content.csv"), own.components.transpose())?;
     write_matrix(&folder.join("gram.csv"), gram(wanted.components.as_ref()).as_ref())?;
     write_matrix(&folder.join("start.csv"), start.transpose())?;
-    let mean = Mat::from_fn(1, content.channels(), |_, c| content.mean[c] / content.scale);
-    write_matrix(&folder.join("mean.csv"), mean.as_ref())?;
-    let table = Mat::from_fn(bones.len(), 3, |b, c| match c {
-        2 => bones[b].length / content.scale,
-        _ => bones[b].joints[c] as f64,
-    });
-    write_matrix(&folder.join("bones.csv"), table.as_ref())?;
     let fixed = Optimiser { max_steps: 500, threshold: -1.0, ..Optimiser::default() };
     let mut last = f64::NAN;
     let seconds = seconds_a_call(0.2, || {

@@ -2,32 +2,32 @@
 
 use crate::kernel::Tiled;
 use crate::model::{ComponentsMeta, LoadError, ModelMeta, Pack};
-use crate::pose::Skeleton;
+use crate::rig::Rig;
 
-/// Style components for up to `JOINTS` joints and `COUNT` components, borrowed from a pack.
+/// Style components for up to `ROWS` rows of coordinates and `COUNT` components, borrowed from a pack.
 #[derive(Clone, Copy, Debug)]
-pub struct Components<'a, const JOINTS: usize, const COUNT: usize> {
+pub struct Components<'a, const ROWS: usize, const COUNT: usize> {
     pub(super) meta: ComponentsMeta<'a>,
-    pub(super) skeleton: Skeleton<'a>,
-    /// Mean heading-local pose of the content, m.
+    pub(super) rows: usize,
+    /// The first row is the root's.
+    pub(super) travels: bool,
+    /// Mean coordinates of the content, rad or m.
     pub(super) mean: &'a [[f32; 3]],
-    /// What the style adds to the mean pose, m.
+    /// What the style adds to the mean.
     pub(super) shift: &'a [[f32; 3]],
-    /// Pseudo-inverse of `C_C`, `K x 3 joints`, 1/m.
+    /// Pseudo-inverse of `C_C`, `K x 3 rows`.
     pub(super) project: Tiled<'a>,
-    /// `C_C`, `3 joints x K`, m.
+    /// `C_C`, `3 rows x K`.
     pub(super) compose: Tiled<'a>,
-    /// `C_X - C_C`, `3 joints x K`, m.
+    /// `C_X - C_C`, `3 rows x K`.
     pub(super) change: Tiled<'a>,
     /// Stored stream, `frames x K`.
     pub(super) weights: &'a [f32],
     /// Path of the stored stream: `[travel x, travel z, sine, cosine of the turn]` since the frame before.
     pub(super) track: &'a [[f32; 4]],
-    /// Local rotations `[i, j, k, w]` that the stored stream takes its twists from; the root faces +Z.
-    pub(super) reference: &'a [[f32; 4]],
 }
 
-impl<'a, const JOINTS: usize, const COUNT: usize> Components<'a, JOINTS, COUNT> {
+impl<'a, const ROWS: usize, const COUNT: usize> Components<'a, ROWS, COUNT> {
     /// The components of a pack, after every check that makes [`step`](Self::step) infallible.
     pub fn load(pack: &Pack<'a>) -> Result<Self, LoadError> {
         let meta = pack
@@ -36,21 +36,21 @@ impl<'a, const JOINTS: usize, const COUNT: usize> Components<'a, JOINTS, COUNT> 
             .iter()
             .find_map(ModelMeta::components)
             .ok_or(LoadError::NoModel { expected: "style components" })?;
-        let skeleton = Skeleton::load(pack)?;
-        let (joints, count, frames) = (skeleton.joints(), meta.count as usize, meta.frames as usize);
-        fits("JOINTS", joints, JOINTS)?;
+        let rig = Rig::load(pack)?;
+        let (rows, count, frames) = (rig.rows(), meta.count as usize, meta.frames as usize);
+        fits("ROWS", rows, ROWS)?;
         fits("COUNT", count, COUNT)?;
         Ok(Self {
             meta,
-            skeleton,
-            mean: pack.slice("components/mean", joints)?,
-            shift: pack.slice("components/shift", joints)?,
-            project: Tiled::load(pack, "components/project", count, 3 * joints)?,
-            compose: Tiled::load(pack, "components/compose", 3 * joints, count)?,
-            change: Tiled::load(pack, "components/change", 3 * joints, count)?,
+            rows,
+            travels: rig.travels(),
+            mean: pack.slice("components/mean", rows)?,
+            shift: pack.slice("components/shift", rows)?,
+            project: Tiled::load(pack, "components/project", count, 3 * rows)?,
+            compose: Tiled::load(pack, "components/compose", 3 * rows, count)?,
+            change: Tiled::load(pack, "components/change", 3 * rows, count)?,
             weights: pack.slice("components/weights", frames.saturating_mul(count))?,
             track: pack.slice("components/track", frames)?,
-            reference: pack.slice("components/reference", joints)?,
         })
     }
 
@@ -59,9 +59,9 @@ impl<'a, const JOINTS: usize, const COUNT: usize> Components<'a, JOINTS, COUNT> 
         &self.meta
     }
 
-    /// The skeleton that poses must have.
-    pub fn skeleton(&self) -> &Skeleton<'a> {
-        &self.skeleton
+    /// Rows of coordinates.
+    pub fn rows(&self) -> usize {
+        self.rows
     }
 
     /// Frames of the stored stream; 0 if there is none.
@@ -69,9 +69,9 @@ impl<'a, const JOINTS: usize, const COUNT: usize> Components<'a, JOINTS, COUNT> 
         self.track.len()
     }
 
-    /// Multiply-adds of projection and composition of one live frame, without kinematics.
+    /// Multiply-adds of projection and composition of one live frame.
     pub fn multiply_adds(&self) -> usize {
-        2 * 3 * self.skeleton.joints() * self.change.columns()
+        2 * 3 * self.rows * self.change.columns()
     }
 }
 

@@ -1,25 +1,24 @@
 //! What running components remember between frames.
 
-use nalgebra::Vector3;
+use crate::engine::Controls;
+use crate::pose::Heading;
 
-use crate::pose::{Controls, Heading};
-
-/// What running components remember: the heading, and for the stored stream where it is. No filters, no history.
+/// What running components remember: for the stored stream where it is. No filters, no history.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ComponentsState<const JOINTS: usize> {
+pub struct ComponentsState<const ROWS: usize> {
     pub(super) heading: Heading,
     /// Point on the ground below the root of the stored stream, world, m.
-    pub(super) ground: Vector3<f32>,
+    pub(super) ground: [f32; 2],
     /// Next frame of the stored stream.
     pub(super) frame: usize,
     /// What the user may turn while it runs.
-    pub controls: Controls<JOINTS>,
+    pub controls: Controls<ROWS>,
 }
 
-impl<const JOINTS: usize> ComponentsState<JOINTS> {
+impl<const ROWS: usize> ComponentsState<ROWS> {
     /// At the origin, facing +Z, full strength, all joints.
-    pub fn new() -> Self {
-        Self { heading: Heading::default(), ground: Vector3::zeros(), frame: 0, controls: Controls::default() }
+    pub const fn new() -> Self {
+        Self { heading: Heading::FORWARD, ground: [0.0; 2], frame: 0, controls: Controls::new() }
     }
 
     /// Forgets the past, keeps the controls.
@@ -28,7 +27,7 @@ impl<const JOINTS: usize> ComponentsState<JOINTS> {
     }
 }
 
-impl<const JOINTS: usize> Default for ComponentsState<JOINTS> {
+impl<const ROWS: usize> Default for ComponentsState<ROWS> {
     fn default() -> Self {
         Self::new()
     }

@@ -1,69 +1,77 @@
 //! The emotion model: a checked, immutable view of a pack.
 
-use crate::kernel::{ROWS, Tiled, dot, tanh};
+use crate::kernel::{ROWS as TILE, Tiled, dot, tanh};
 use crate::model::{ATTRIBUTES, EmotionMeta, LoadError, ModelMeta, Pack};
-use crate::pose::Skeleton;
+use crate::rig::Rig;
 
 /// Times between keyframes that a pack may ask for, s.
 const DURATIONS: [f32; 2] = [1e-3, 60.0];
 
-/// Strength of emotions in a motion of up to `JOINTS` joints and `KEYS` keyframes, borrowed from a pack. `WIDTH` holds the
-/// components of a keyframe, and the network's hidden units and attributes together.
+/// Strength of emotions in a motion of up to `ROWS` rows of coordinates and `KEYS` keyframes, borrowed from a pack. `WIDTH` holds
+/// the components of a keyframe, and the network's hidden units and attributes together.
 #[derive(Clone, Copy, Debug)]
-pub struct Emotion<'a, const JOINTS: usize, const KEYS: usize, const WIDTH: usize> {
+pub struct Emotion<'a, const ROWS: usize, const KEYS: usize, const WIDTH: usize> {
     pub(super) meta: EmotionMeta<'a>,
-    pub(super) skeleton: Skeleton<'a>,
+    pub(super) rows: usize,
+    /// True for a body: row 0 of a keyframe is the root's place, and there is a heading.
+    pub(super) travels: bool,
+    /// Time between two frames of the training, s.
+    pub(super) dt: f32,
     attributes: usize,
     /// Units x (attributes + 1), the constant last.
     hidden: &'a [f32],
     /// `[D x (units + attributes)]` of each keyframe: of the hidden units, then of the strengths themselves.
-    output: &'a [[f32; ROWS]],
+    output: &'a [[f32; TILE]],
     output_bias: &'a [f32],
-    /// Back-projection `[3 joints x D]` to positions, m.
-    pub(super) position: Tiled<'a>,
-    pub(super) position_mean: &'a [[f32; 3]],
-    /// Back-projection to velocities since the keyframe before, m/s.
+    /// Back-projection `[channels x D]`: the coordinates in order, rad or m, then the heading, rad.
+    pub(super) coordinates: Tiled<'a>,
+    pub(super) mean: &'a [f32],
+    /// Back-projection to velocities since the keyframe before, times levers, m/s.
     pub(super) velocity: Tiled<'a>,
-    pub(super) velocity_mean: &'a [[f32; 3]],
-    rank: &'a [f32],
-    rank_bias: &'a [f32],
-    /// Local rotations `[i, j, k, w]`, keyframe by keyframe, that twists come from.
-    pub(super) reference: &'a [[f32; 4]],
+    pub(super) velocity_mean: &'a [f32],
+    /// How far a unit of each channel moves the body, m per rad or m.
+    pub(super) lever: &'a [f32],
 }
 
-impl<'a, const JOINTS: usize, const KEYS: usize, const WIDTH: usize> Emotion<'a, JOINTS, KEYS, WIDTH> {
+impl<'a, const ROWS: usize, const KEYS: usize, const WIDTH: usize> Emotion<'a, ROWS, KEYS, WIDTH> {
     /// The emotion model of a pack, after every check that makes [`step`](Self::step) infallible.
     pub fn load(pack: &Pack<'a>) -> Result<Self, LoadError> {
         let meta = pack.metadata().models.iter().find_map(ModelMeta::emotion);
         let meta = meta.ok_or(LoadError::NoModel { expected: "emotion model" })?;
-        let skeleton = Skeleton::load(pack)?;
-        let joints = skeleton.joints();
+        let rig = Rig::load(pack)?;
+        let (rows, travels) = (rig.rows(), rig.travels());
         let attributes = meta.attributes.iter().take_while(|attribute| attribute.is_some()).count();
         let (keys, components, units) = (meta.keyframes as usize, meta.components as usize, meta.hidden as usize);
         let inputs = units.saturating_add(attributes);
-        fits("JOINTS", joints, JOINTS)?;
+        fits("ROWS", rows, ROWS)?;
         fits("KEYS", keys, KEYS)?;
         fits("WIDTH", components.max(inputs), WIDTH)?;
-        if attributes == 0 || units == 0 || components == 0 || !plausible(&meta, attributes) {
+        let rate = pack.metadata().frame_rate;
+        if attributes == 0
+            || units == 0
+            || components == 0
+            || !plausible(&meta, attributes)
+            || rate.is_nan()
+            || rate <= 0.0
+        {
             return Err(LoadError::Metadata);
         }
-        let tiles = components.div_ceil(ROWS).saturating_mul(inputs);
-        let motion = keys.saturating_mul(components);
-        let (position, velocity) = ("emotion/position", "emotion/velocity");
+        let tiles = components.div_ceil(TILE).saturating_mul(inputs);
+        let channels = 3 * rows + usize::from(travels);
         Ok(Self {
             meta,
-            skeleton,
+            rows,
+            travels,
+            dt: 1.0 / rate,
             attributes,
             hidden: pack.slice("emotion/hidden", units.saturating_mul(attributes + 1))?,
             output: pack.slice("emotion/output", tiles.saturating_mul(keys))?,
-            output_bias: pack.slice("emotion/output_bias", motion)?,
-            position: Tiled::load(pack, position, joints.saturating_mul(3), components)?,
-            position_mean: pack.slice("emotion/position_mean", joints)?,
-            velocity: Tiled::load(pack, velocity, joints.saturating_mul(3), components)?,
-            velocity_mean: pack.slice("emotion/velocity_mean", joints)?,
-            rank: pack.slice("emotion/rank", motion.saturating_mul(attributes))?,
-            rank_bias: pack.slice("emotion/rank_bias", attributes)?,
-            reference: pack.slice("emotion/reference", keys.saturating_mul(joints))?,
+            output_bias: pack.slice("emotion/output_bias", keys.saturating_mul(components))?,
+            coordinates: Tiled::load(pack, "emotion/coordinates", channels, components)?,
+            mean: pack.slice("emotion/mean", channels)?,
+            velocity: Tiled::load(pack, "emotion/velocity", channels, components)?,
+            velocity_mean: pack.slice("emotion/velocity_mean", channels)?,
+            lever: pack.slice("emotion/lever", channels)?,
         })
     }
 
@@ -72,9 +80,14 @@ impl<'a, const JOINTS: usize, const KEYS: usize, const WIDTH: usize> Emotion<'a,
         &self.meta
     }
 
-    /// The skeleton of the poses that come out.
-    pub fn skeleton(&self) -> &Skeleton<'a> {
-        &self.skeleton
+    /// Rows of the frames that come out.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Time between two frames of the training, s.
+    pub fn frame_time(&self) -> f32 {
+        self.dt
     }
 
     /// Number of attributes, 1 to [`ATTRIBUTES`].
@@ -89,9 +102,9 @@ impl<'a, const JOINTS: usize, const KEYS: usize, const WIDTH: usize> Emotion<'a,
 
     /// Multiply-adds of a change of strength: network and back-projection.
     pub fn multiply_adds(&self) -> usize {
-        let components = self.position.columns();
-        let network = components.next_multiple_of(ROWS) * (self.meta.hidden as usize + self.attributes);
-        let projection = 2 * (3 * self.skeleton.joints()).next_multiple_of(ROWS) * components;
+        let components = self.coordinates.columns();
+        let network = components.next_multiple_of(TILE) * (self.meta.hidden as usize + self.attributes);
+        let projection = 2 * self.mean.len().next_multiple_of(TILE) * components;
         self.keys() * (network + projection)
     }
 
@@ -106,7 +119,7 @@ impl<'a, const JOINTS: usize, const KEYS: usize, const WIDTH: usize> Emotion<'a,
         held
     }
 
-    /// What the output layers see: hidden units, then the strengths. Cost: a tanh a hidden unit.
+    /// What the output layers see: hidden units, then the strengths. Cost: a tanh per hidden unit.
     pub(super) fn inputs(&self, strength: &[f32; ATTRIBUTES]) -> [f32; WIDTH] {
         let mut inputs = [0.0; WIDTH];
         let rows = self.hidden.chunks_exact(self.attributes.saturating_add(1));
@@ -121,9 +134,9 @@ impl<'a, const JOINTS: usize, const KEYS: usize, const WIDTH: usize> Emotion<'a,
 
     /// Components of keyframe `key` for these inputs; zeros past the last one.
     pub(super) fn components(&self, key: usize, inputs: &[f32; WIDTH]) -> [f32; WIDTH] {
-        let count = self.position.columns();
+        let count = self.coordinates.columns();
         let columns = self.meta.hidden as usize + self.attributes;
-        let tiles = count.div_ceil(ROWS) * columns;
+        let tiles = count.div_ceil(TILE) * columns;
         let mut components = [0.0; WIDTH];
         let layer = self.output.get(key * tiles..).and_then(|rest| Tiled::new(count, columns, rest.get(..tiles)?));
         let bias = self.output_bias.get(key * count..).unwrap_or(&[]);
@@ -134,20 +147,10 @@ impl<'a, const JOINTS: usize, const KEYS: usize, const WIDTH: usize> Emotion<'a,
         components
     }
 
-    /// Strengths of a motion by the ranking functions, from its components `[K x D]`; 0 past the last attribute.
-    pub fn score(&self, motion: &[f32]) -> [f32; ATTRIBUTES] {
-        let mut scores = [0.0; ATTRIBUTES];
-        let rows = self.rank.chunks_exact(self.output_bias.len().max(1));
-        for ((score, rank), bias) in scores.iter_mut().zip(rows).zip(self.rank_bias) {
-            *score = bias + dot(rank, motion);
-        }
-        scores
-    }
-
     /// The motion at a strength: its components `[K x D]` to the front of `motion`, held inside the plausible strengths.
     pub fn motion(&self, strength: &[f32; ATTRIBUTES], motion: &mut [f32]) {
         let inputs = self.inputs(&self.held(strength, &[0.0; ATTRIBUTES]));
-        let count = self.position.columns();
+        let count = self.coordinates.columns();
         for (key, to) in motion.chunks_mut(count).enumerate().take(self.keys()) {
             to.iter_mut().zip(self.components(key, &inputs)).for_each(|(to, from)| *to = from);
         }

@@ -5,31 +5,61 @@ use nalgebra::Vector3;
 use super::model::Emotion;
 use super::place::{Place, part_of};
 use super::spline::Taps;
-use crate::kernel::sqrt;
+use crate::kernel::{sin_cos, sqrt};
 use crate::model::ATTRIBUTES;
-use crate::pose::{Heading, World};
+use crate::pose::Heading;
 
 /// A cycle that goes less far is on the spot, m.
 const LEAST_WAY: f32 = 0.2;
 
-/// Joint positions at the keyframes, in the motion's frame: the ground below the first keyframe's root is the origin.
+/// Coordinates at the keyframes. Row 0 of a body that travels is the root's place in the motion's frame: the ground below the first
+/// keyframe's root is the origin, its heading +Z.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Motion<const JOINTS: usize, const KEYS: usize> {
-    positions: [[[f32; 3]; JOINTS]; KEYS],
+pub(super) struct Motion<const ROWS: usize, const KEYS: usize> {
+    keys: [Key<ROWS>; KEYS],
     /// From each keyframe to the next, s; 0 after the last piece.
     durations: [f32; KEYS],
     /// Pieces, one fewer than keyframes.
     pub pieces: usize,
+    /// True for a body: row 0 is a place.
+    pub travels: bool,
     /// Where the last keyframe is against the first one: the next round of a cycle, a step of `None` for any other motion.
     pub round: Option<Place>,
+    /// Heading of the last keyframe against the first one's, rad.
+    turn: f32,
     /// All pieces together, s.
     pub seconds: f32,
 }
 
-impl<const JOINTS: usize, const KEYS: usize> Motion<JOINTS, KEYS> {
+/// Coordinates of a keyframe.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Key<const ROWS: usize> {
+    rows: [[f32; 3]; ROWS],
+    /// Turn from the motion's frame, rad.
+    heading: f32,
+}
+
+impl<const ROWS: usize> Key<ROWS> {
+    const ZERO: Self = Self { rows: [[0.0; 3]; ROWS], heading: 0.0 };
+
+    /// The coordinates of the first `rows` rows, then the heading.
+    fn channels(&mut self, rows: usize) -> impl Iterator<Item = &mut f32> {
+        self.rows.iter_mut().take(rows).flatten().chain(core::iter::once(&mut self.heading))
+    }
+}
+
+impl<const ROWS: usize, const KEYS: usize> Motion<ROWS, KEYS> {
     /// Nothing yet.
-    pub fn new() -> Self {
-        Self { positions: [[[0.0; 3]; JOINTS]; KEYS], durations: [0.0; KEYS], pieces: 0, round: None, seconds: 0.0 }
+    pub const fn new() -> Self {
+        Self {
+            keys: [Key::ZERO; KEYS],
+            durations: [0.0; KEYS],
+            pieces: 0,
+            travels: false,
+            round: None,
+            turn: 0.0,
+            seconds: 0.0,
+        }
     }
 
     /// Duration of a piece, s.
@@ -66,57 +96,73 @@ impl<const JOINTS: usize, const KEYS: usize> Motion<JOINTS, KEYS> {
         Taps::new([before, own, after], into / own)
     }
 
-    /// A joint at the four keyframes around a piece; those of a neighbouring round of a cycle are carried over.
-    pub fn around(&self, piece: usize, joint: usize) -> [Vector3<f32>; 4] {
+    /// A row at the four keyframes around a piece; the places of a neighbouring round of a cycle are carried over.
+    pub fn around(&self, piece: usize, row: usize) -> [Vector3<f32>; 4] {
         let at = |key: usize| {
-            let key = self.positions.get(key).and_then(|positions| positions.get(joint));
-            key.map_or_else(Vector3::zeros, |position| Vector3::from(*position))
+            let row = self.keys.get(key).and_then(|key| key.rows.get(row));
+            row.map_or_else(Vector3::zeros, |row| Vector3::from(*row))
         };
+        let place = self.travels && row == 0;
+        let (back, on) = (
+            |round: &Place, row| if place { round.undo(row) } else { row },
+            |round: &Place, row| if place { round.apply(row) } else { row },
+        );
         let (start, end) = (at(piece), at(piece + 1));
-        let before = match self.round {
+        let before = match &self.round {
             _ if piece > 0 => at(piece - 1),
-            Some(round) => round.undo(at(self.pieces.saturating_sub(1))),
+            Some(round) => back(round, at(self.pieces.saturating_sub(1))),
             None => start,
         };
-        let after = match self.round {
+        let after = match &self.round {
             _ if piece + 1 < self.pieces => at(piece + 2),
-            Some(round) => round.apply(at(1)),
+            Some(round) => on(round, at(1)),
             None => end,
         };
         [before, start, end, after]
     }
 
-    /// Heading at the last keyframe against the first one's.
-    fn turn(&self, skeleton: &crate::pose::Skeleton) -> Heading {
-        let at = |key: usize| {
-            let mut world = World::<JOINTS>::identity();
-            for (to, from) in world.positions.iter_mut().zip(self.positions.get(key).into_iter().flatten()) {
-                *to = Vector3::from(*from);
-            }
-            Heading::default().follow(skeleton, &world)
+    /// The same of the heading, rad.
+    pub fn headings(&self, piece: usize) -> [f32; 4] {
+        let at = |key: usize| self.keys.get(key).map_or(0.0, |key| key.heading);
+        let (start, end) = (at(piece), at(piece + 1));
+        let before = match self.round {
+            _ if piece > 0 => at(piece - 1),
+            Some(_) => at(self.pieces.saturating_sub(1)) - self.turn,
+            None => start,
         };
-        let [sin, cos] = at(self.pieces).turn_from(at(0));
-        Heading::default().turned(sin, cos)
+        let after = match self.round {
+            _ if piece + 1 < self.pieces => at(piece + 2),
+            Some(_) => at(1) + self.turn,
+            None => end,
+        };
+        [before, start, end, after]
     }
 
     /// Makes a cycle of keyframes that nearly are one: what the last posture differs from the first one's is spread over the
     /// whole round, half of it to each end, so that the next round begins exactly where this one ends.
-    fn close(&mut self, skeleton: &crate::pose::Skeleton) {
-        let heading = self.turn(skeleton);
-        let ground = |key: usize| {
-            let [x, _, z] = self.positions.get(key).and_then(|p| p.first()).copied().unwrap_or_default();
-            Vector3::new(x, 0.0, z)
+    fn close(&mut self) {
+        let (Some(first), Some(last)) = (self.keys.first().copied(), self.keys.get(self.pieces).copied()) else {
+            return;
         };
-        let round = Place { ground: ground(self.pieces) - heading.to_world(ground(0)), heading };
-        let (first, last) = (self.positions.first().copied(), self.positions.get(self.pieces).copied());
-        let (Some(first), Some(last)) = (first, last) else { return };
+        let mut round = Place::default();
+        if self.travels {
+            self.turn = last.heading - first.heading;
+            let (sin, cos) = sin_cos(self.turn);
+            round.heading = Heading::default().turned(sin, cos);
+            let ground =
+                |key: &Key<ROWS>| key.rows.first().map_or_else(Vector3::zeros, |[x, _, z]| Vector3::new(*x, 0.0, *z));
+            round.ground = ground(&last) - round.heading.to_world(ground(&first));
+        }
         let mut passed = 0.0;
-        for (positions, duration) in self.positions.iter_mut().zip(self.durations).take(self.pieces + 1) {
+        for (key, duration) in self.keys.iter_mut().zip(self.durations).take(self.pieces + 1) {
             let share = passed / self.seconds;
-            for ((position, first), last) in positions.iter_mut().zip(first).zip(last) {
-                let half = (Vector3::from(last) - round.apply(Vector3::from(first))) * 0.5;
-                let change = heading.to_local(half) * (1.0 - share) - half * share;
-                *position = (Vector3::from(*position) + change).into();
+            for (at, ((row, first), last)) in key.rows.iter_mut().zip(first.rows).zip(last.rows).enumerate() {
+                for (axis, ((x, first), last)) in row.iter_mut().zip(first).zip(last).enumerate() {
+                    // Over the ground a round leads on: its ends are not the same.
+                    let over_ground = self.travels && at == 0 && axis != 1;
+                    let half = if over_ground { 0.0 } else { (last - first) * 0.5 };
+                    *x += half * (1.0 - share) - half * share;
+                }
             }
             passed += duration;
         }
@@ -124,40 +170,37 @@ impl<const JOINTS: usize, const KEYS: usize> Motion<JOINTS, KEYS> {
     }
 }
 
-impl<const JOINTS: usize, const KEYS: usize, const WIDTH: usize> Emotion<'_, JOINTS, KEYS, WIDTH> {
-    /// Evaluates the network and projects back. Chan 2019, sections 3.4 and 4: the time between keyframes is the way that the
-    /// joints go over the speed at which they go, all joints taken as one vector. Cost: [`multiply_adds`](Self::multiply_adds), a tanh a hidden unit.
-    pub(super) fn evaluate(&self, strength: &[f32; ATTRIBUTES], motion: &mut Motion<JOINTS, KEYS>) {
+impl<const ROWS: usize, const KEYS: usize, const WIDTH: usize> Emotion<'_, ROWS, KEYS, WIDTH> {
+    /// Evaluates the network and projects back. Chan 2019, sections 3.4 and 4: the time between keyframes is the way over the speed,
+    /// all channels times their levers taken as one vector. Cost: [`multiply_adds`](Self::multiply_adds), a tanh per hidden unit.
+    pub(super) fn evaluate(&self, strength: &[f32; ATTRIBUTES], motion: &mut Motion<ROWS, KEYS>) {
         let inputs = self.inputs(strength);
-        let joints = self.skeleton.joints();
         motion.pieces = self.keys().saturating_sub(1);
-        (motion.round, motion.seconds) = (None, 0.0);
-        let mut before: Option<[[f32; 3]; JOINTS]> = None;
-        for key in 0..self.keys() {
-            let components = self.components(key, &inputs);
-            let mut velocity = [[0.0; 3]; JOINTS];
-            let Some(positions) = motion.positions.get_mut(key) else { return };
-            positions.iter_mut().zip(self.position_mean).for_each(|(to, mean)| *to = *mean);
-            self.position.multiply_add(&components, positions.as_flattened_mut());
-            if let Some(before) = before {
-                velocity.iter_mut().zip(self.velocity_mean).for_each(|(to, mean)| *to = *mean);
-                self.velocity.multiply_add(&components, velocity.as_flattened_mut());
-                let ways = positions.as_flattened().iter().zip(before.as_flattened()).map(|(to, from)| to - from);
-                let way = length(ways.take(3 * joints));
-                let speed = length(velocity.as_flattened().iter().copied().take(3 * joints));
-                let duration = self.duration(way, speed);
-                if let Some(to) = motion.durations.get_mut(key - 1) {
+        (motion.travels, motion.round, motion.turn, motion.seconds) = (self.travels, None, 0.0, 0.0);
+        let mut before: Option<Key<ROWS>> = None;
+        for (number, to) in motion.keys.iter_mut().enumerate().take(self.keys()) {
+            let components = self.components(number, &inputs);
+            let mut key = Key::ZERO;
+            let values = self.coordinates.sums(&components).flatten().zip(self.mean);
+            key.channels(self.rows).zip(values).for_each(|(to, (value, mean))| *to = mean + value);
+            *to = key;
+            if let Some(mut before) = before {
+                let ways = key.channels(self.rows).zip(before.channels(self.rows)).zip(self.lever);
+                let way = length(ways.map(|((to, from), lever)| (*to - *from) * lever));
+                let speeds = self.velocity.sums(&components).flatten().zip(self.velocity_mean);
+                let duration = self.duration(way, length(speeds.map(|(value, mean)| mean + value)));
+                if let Some(to) = motion.durations.get_mut(number - 1) {
                     *to = duration;
                 }
                 motion.seconds += duration;
             }
-            before = Some(*positions);
+            before = Some(key);
         }
         if let Some(end) = motion.durations.get_mut(motion.pieces) {
             *end = 0.0;
         }
         if self.meta.cycle {
-            motion.close(&self.skeleton);
+            motion.close();
         }
     }
 

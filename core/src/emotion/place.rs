@@ -14,6 +14,11 @@ pub struct Place {
 }
 
 impl Place {
+    /// At the origin, facing +Z.
+    pub const fn new() -> Self {
+        Self { ground: Vector3::new(0.0, 0.0, 0.0), heading: Heading::FORWARD }
+    }
+
     /// World position of a point of the motion.
     pub fn apply(&self, point: Vector3<f32>) -> Vector3<f32> {
         self.ground + self.heading.to_world(point)

@@ -7,15 +7,15 @@ use super::place::Place;
 use crate::model::ATTRIBUTES;
 
 /// What a playing motion remembers: its keyframes, where it is in them and in the world, and what still fades out after a
-/// change. About `12 JOINTS (KEYS + 2)` bytes.
+/// change. About `12 ROWS (KEYS + 2)` bytes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EmotionState<const JOINTS: usize, const KEYS: usize> {
+pub struct EmotionState<const ROWS: usize, const KEYS: usize> {
     /// Strength of each attribute that is wanted, in units of the training's ranking function; it may change at any frame. Held
     /// inside the pack's range; one that is not finite leaves the attribute as it is.
     pub strength: [f32; ATTRIBUTES],
     /// Strengths that the keyframes are for; `None` before the first frame.
     pub(super) played: Option<[f32; ATTRIBUTES]>,
-    pub(super) motion: Motion<JOINTS, KEYS>,
+    pub(super) motion: Motion<ROWS, KEYS>,
     /// Between keyframes `piece` and `piece + 1`.
     pub(super) piece: usize,
     /// Time since keyframe `piece`, s.
@@ -23,12 +23,14 @@ pub struct EmotionState<const JOINTS: usize, const KEYS: usize> {
     /// True once a motion that is no cycle has ended.
     pub(super) ended: bool,
     pub(super) place: Place,
-    pub(super) fade: Fade<JOINTS>,
+    pub(super) fade: Fade<ROWS>,
+    /// Where the root was in the last frame, on the ground; `None` before the first one.
+    pub(super) last: Option<Vector3<f32>>,
 }
 
-impl<const JOINTS: usize, const KEYS: usize> EmotionState<JOINTS, KEYS> {
+impl<const ROWS: usize, const KEYS: usize> EmotionState<ROWS, KEYS> {
     /// At the first keyframe, at the origin, facing +Z, strengths 0.
-    pub fn new() -> Self {
+    pub const fn new() -> Self {
         Self {
             strength: [0.0; ATTRIBUTES],
             played: None,
@@ -36,8 +38,9 @@ impl<const JOINTS: usize, const KEYS: usize> EmotionState<JOINTS, KEYS> {
             piece: 0,
             into: 0.0,
             ended: false,
-            place: Place::default(),
+            place: Place::new(),
             fade: Fade::none(),
+            last: None,
         }
     }
 
@@ -62,26 +65,39 @@ impl<const JOINTS: usize, const KEYS: usize> EmotionState<JOINTS, KEYS> {
         (self.piece, if own > 0.0 { self.into / own } else { 0.0 })
     }
 
-    /// True once a motion that is no cycle has ended: its last pose stays.
+    /// True once a motion that is no cycle has ended: its last frame stays.
     pub fn has_ended(&self) -> bool {
         self.ended
     }
 
-    /// Where the motion's first keyframe stands: of a cycle, of this round.
+    /// Where the motion's first keyframe stands: of a cycle, of this round. Between pose and pose
+    /// ([`Pipeline`](crate::engine::Pipeline)) it is measured from where the body stands.
     pub fn place(&self) -> Place {
         self.place
     }
 
     /// Moves everything, at once: to start somewhere, or to bring a walk of hours back to the origin, where single precision
-    /// is finest. (Ten kilometres away a millimetre is its last digit.)
+    /// is finest. (Ten kilometres away a millimetre is its last digit.) It is no travel. A machine that stands has no place.
     pub fn put(&mut self, place: Place) {
         let [sin, cos] = place.heading.turn_from(self.place.heading);
-        self.fade.turn(Place { ground: Vector3::zeros(), heading: crate::pose::Heading::default().turned(sin, cos) });
+        let turn = Place { heading: Place::new().heading.turned(sin, cos), ..Place::new() };
+        if self.motion.travels {
+            self.fade.turn(&turn);
+        }
+        self.last = self.last.map(|last| place.apply(self.place.undo(last)));
         self.place = place;
+    }
+
+    /// The origin moves to where the root was last.
+    pub(super) fn come_along(&mut self) {
+        if let Some(last) = self.last {
+            self.place.ground -= last;
+            self.last = Some(Vector3::zeros());
+        }
     }
 }
 
-impl<const JOINTS: usize, const KEYS: usize> Default for EmotionState<JOINTS, KEYS> {
+impl<const ROWS: usize, const KEYS: usize> Default for EmotionState<ROWS, KEYS> {
     fn default() -> Self {
         Self::new()
     }
@@ -90,26 +106,43 @@ impl<const JOINTS: usize, const KEYS: usize> Default for EmotionState<JOINTS, KE
 /// Time in which an offset fades out, s.
 pub const FADE: f32 = 0.3;
 
-/// What joints are ahead of the spline after a change, in position and in velocity, and how it fades: a cubic that begins with
+/// What coordinates are ahead of the spline after a change, in value and in velocity, and how it fades: a cubic that begins with
 /// both and ends with neither. Its acceleration is at most `6 |offset| / FADE^2 + 4 |rate| / FADE`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Fade<const JOINTS: usize> {
-    /// m, along the world's axes.
-    offset: [Vector3<f32>; JOINTS],
-    /// m/s.
-    rate: [Vector3<f32>; JOINTS],
+pub(super) struct Fade<const ROWS: usize> {
+    /// The change that fades, as it was at first.
+    from: Lead<ROWS>,
     /// Time since the change, s; [`FADE`] once nothing is left.
     since: f32,
 }
 
-impl<const JOINTS: usize> Fade<JOINTS> {
-    pub fn none() -> Self {
-        Self { offset: [Vector3::zeros(); JOINTS], rate: [Vector3::zeros(); JOINTS], since: FADE }
+/// How far coordinates are ahead, and how much faster they go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Lead<const ROWS: usize> {
+    /// rad or m; the root's along the world's axes.
+    pub offset: [Vector3<f32>; ROWS],
+    /// The same in a second.
+    pub rate: [Vector3<f32>; ROWS],
+    /// Offset and rate of the heading, rad and rad/s.
+    pub heading: [f32; 2],
+}
+
+impl<const ROWS: usize> Lead<ROWS> {
+    pub const NONE: Self = Self {
+        offset: [Vector3::new(0.0, 0.0, 0.0); ROWS],
+        rate: [Vector3::new(0.0, 0.0, 0.0); ROWS],
+        heading: [0.0; 2],
+    };
+}
+
+impl<const ROWS: usize> Fade<ROWS> {
+    pub const fn none() -> Self {
+        Self { from: Lead::NONE, since: FADE }
     }
 
     /// From now on these offsets and rates.
-    pub fn start(offset: [Vector3<f32>; JOINTS], rate: [Vector3<f32>; JOINTS]) -> Self {
-        Self { offset, rate, since: 0.0 }
+    pub fn start(from: Lead<ROWS>) -> Self {
+        Self { from, since: 0.0 }
     }
 
     /// Time passes.
@@ -117,19 +150,30 @@ impl<const JOINTS: usize> Fade<JOINTS> {
         self.since = (self.since + seconds).min(FADE);
     }
 
-    fn turn(&mut self, turn: Place) {
-        for v in self.offset.iter_mut().chain(&mut self.rate) {
+    /// Turns the root's.
+    fn turn(&mut self, turn: &Place) {
+        for v in self.from.offset.first_mut().into_iter().chain(self.from.rate.first_mut()) {
             *v = turn.apply(*v);
         }
     }
 
-    /// Offset and rate of every joint now. Cost: 12 multiply-adds a joint.
-    pub fn now(&self) -> impl Iterator<Item = (Vector3<f32>, Vector3<f32>)> {
+    /// Offset by offset and by rate, then rate by offset and by rate.
+    fn factors(&self) -> [f32; 4] {
         let u = self.since / FADE;
         let v = 1.0 - u;
-        let (offset, rate) = (v * v * (1.0 + 2.0 * u), FADE * u * v * v);
-        let (offset_rate, rate_rate) = (-6.0 * u * v / FADE, v * (1.0 - 3.0 * u));
-        let pairs = self.offset.iter().zip(&self.rate);
-        pairs.map(move |(o, r)| (o * offset + r * rate, o * offset_rate + r * rate_rate))
+        [v * v * (1.0 + 2.0 * u), FADE * u * v * v, -6.0 * u * v / FADE, v * (1.0 - 3.0 * u)]
+    }
+
+    /// Offset and rate of every row now. Cost: 12 multiply-adds per row.
+    pub fn now(&self) -> impl Iterator<Item = (Vector3<f32>, Vector3<f32>)> {
+        let [a, b, c, d] = self.factors();
+        self.from.offset.iter().zip(&self.from.rate).map(move |(o, r)| (o * a + r * b, o * c + r * d))
+    }
+
+    /// Offset and rate of the heading now.
+    pub fn heading(&self) -> [f32; 2] {
+        let [a, b, c, d] = self.factors();
+        let [o, r] = self.from.heading;
+        [o * a + r * b, o * c + r * d]
     }
 }

@@ -1,19 +1,13 @@
-//! The last stage of every pipeline: what leaves it never exceeds the joints' limits, whatever comes in.
+//! The last stage: what leaves it never exceeds the coordinates' limits, whatever comes in.
 //!
 //! | file | holds |
 //! |---|---|
-//! | `guard` | which frames are quarantined: missing, not finite, not unit, far away, frozen |
-//! | `chart` | a joint's rotation as up to three coordinates, rad, and back |
 //! | `axis` | one coordinate: position, velocity and acceleration limits, with braking distance |
-//! | `free` | a vector without position limits: the root's position, rotations of free joints |
+//! | `free` | a vector without position limits: the root's way over the ground |
 //! | `model` | [`Limiter`]: a checked view of the tables |
 //! | `state`, `step` | what it remembers and reports; one frame |
 //!
-//! # The joints
-//!
-//! Every joint has a [`JointKind`]: a *hinge* (one servo), a *chain* of two or three hinges at right angles (the servos of a
-//! shoulder, or Euler angles in any order), a *ball* (swing and twist, for animation), or *free* (the root: rates only).
-//! Limits hold for the coordinates: angles of hinges, twist and the two components of the swing's rotation vector.
+//! Limits hold for [coordinates](crate::rig): angles of hinges, lengths of sliders, components of a ball's rotation vector, height of the root.
 //!
 //! # What is guaranteed
 //!
@@ -26,17 +20,14 @@
 //! A coordinate only goes as fast as it can brake before its bound, so with one table all three hold at once, always: the
 //! reachable speed is the exact discrete one, `D(w) = (n + 1) w - n (n + 1) / 2 u <= room` with `u = acceleration dt^2`,
 //! `n = floor(w / u)`. They conflict only where the limits change while a joint moves (another pack, same state): then 1 wins over
-//! 2, and 2 over 3. Motion that is itself within the limits passes to rounding. Rates of free joints and of the root hold for
-//! the norm of the angular velocity and of the velocity.
+//! 2, and 2 over 3. Motion that is itself within the limits passes to rounding. Rates of the root's travel hold for the
+//! norm of its velocity; travel and heading have no position limits.
 
 mod axis;
-mod chart;
 mod free;
-mod guard;
 mod model;
 mod state;
 mod step;
 
-pub use guard::{Fault, Guard};
-pub use model::{JointKind, LimitTable, Limiter};
+pub use model::{LimitTable, Limiter};
 pub use state::{Clamped, LimitReport, LimitState};

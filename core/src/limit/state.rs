@@ -1,72 +1,72 @@
 //! What a limiter remembers and reports.
 
-use nalgebra::Vector3;
-
 use super::axis::Coordinate;
-use super::guard::{Fault, Guard};
-use crate::pose::Pose;
+use crate::pose::Heading;
 
-/// How many joints a frame had that could not go where they were told.
+/// Why a coordinate did not go where it was told.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Clamped {
-    /// Told to go beyond a position limit by more than 1e-5 rad.
-    pub position: u16,
-    /// Not there, by more than 1e-5 rad or m, for want of speed or acceleration; the root's position counts as a joint.
-    pub rate: u16,
+    /// Told to go beyond a position limit by more than 1e-5.
+    pub position: bool,
+    /// Not there, by more than 1e-5, for want of speed or acceleration.
+    pub rate: bool,
+}
+
+impl Clamped {
+    /// True if it went elsewhere.
+    pub fn any(self) -> bool {
+        self.position || self.rate
+    }
 }
 
 /// What happened to the last frame, and to all of them. Counts stop at their largest value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LimitReport {
-    /// What was wrong with the last frame.
-    pub fault: Option<Fault>,
-    /// Frames since the last sound one.
+    /// Coordinates that the last frame told to go beyond a position limit.
+    pub position: u16,
+    /// Coordinates that were not where the last frame told them, for want of speed or acceleration; the root's travel counts as one,
+    /// its heading as another.
+    pub rate: u16,
+    /// Frames without input since the last one with it.
     pub gap: u32,
-    /// Joints clamped in the last frame.
-    pub clamped: Clamped,
-    /// Frames so far.
-    pub frames: u32,
-    /// Frames that were quarantined.
-    pub faulty_frames: u32,
-    /// Frames in which a joint was clamped.
+    /// Frames in which a coordinate was clamped.
     pub clamped_frames: u32,
-    /// Joints clamped, all frames together; a joint that was clamped both ways counts once.
-    pub clamped_joints: u32,
 }
 
 /// What a running limiter remembers: where every coordinate is and how fast it goes.
 ///
 /// A new state is at rest, as the table says; [`Limiter::start`](super::Limiter::start) puts it where the robot is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LimitState<const JOINTS: usize> {
-    pub(super) joints: [Joint; JOINTS],
-    pub(super) root_went: Vector3<f32>,
-    pub(super) root_left: Vector3<f32>,
-    /// The last frame that went out.
-    pub(super) pose: Pose<JOINTS>,
+pub struct LimitState<const ROWS: usize> {
+    pub(super) axes: [[Coordinate; 3]; ROWS],
+    pub(super) clamped: [[Clamped; 3]; ROWS],
+    /// Last step of the root over the ground, and what it was short of then, world, m.
+    pub(super) root_step: [f32; 2],
+    pub(super) root_error: [f32; 2],
+    /// Where the body faces, the last step of it, and what it was short of, rad.
+    pub(super) heading: Option<Heading>,
+    pub(super) heading_step: f32,
+    pub(super) heading_error: f32,
     pub(super) started: bool,
-    pub(super) rooted: bool,
-    pub(super) guard: Guard,
     pub(super) report: LimitReport,
 }
 
-/// Coordinates of a joint; of a free one, step and remainder as rotation vectors.
-pub(super) type Joint = [Coordinate; 3];
-
 const REST: Coordinate = Coordinate { at: 0.0, went: 0.0, left: 0.0 };
+const FREE: Clamped = Clamped { position: false, rate: false };
 
-impl<const JOINTS: usize> LimitState<JOINTS> {
-    /// At rest; the root's position is that of the first sound frame.
-    pub fn new() -> Self {
+impl<const ROWS: usize> LimitState<ROWS> {
+    /// At rest; the heading is that of the first frame.
+    pub const fn new() -> Self {
         Self {
-            joints: [[REST; 3]; JOINTS],
-            root_went: Vector3::zeros(),
-            root_left: Vector3::zeros(),
-            pose: Pose::identity(),
+            axes: [[REST; 3]; ROWS],
+            clamped: [[FREE; 3]; ROWS],
+            root_step: [0.0; 2],
+            root_error: [0.0; 2],
+            heading: None,
+            heading_step: 0.0,
+            heading_error: 0.0,
             started: false,
-            rooted: false,
-            guard: Guard::default(),
-            report: LimitReport::default(),
+            report: LimitReport { position: 0, rate: 0, gap: 0, clamped_frames: 0 },
         }
     }
 
@@ -80,19 +80,18 @@ impl<const JOINTS: usize> LimitState<JOINTS> {
         &self.report
     }
 
-    /// The last frame that went out.
-    pub fn pose(&self) -> &Pose<JOINTS> {
-        &self.pose
+    /// Where a coordinate is, rad or m; `None` past the last row.
+    pub fn coordinate(&self, index: usize) -> Option<f32> {
+        self.axes.as_flattened().get(index).map(|axis| axis.at)
     }
 
-    /// Coordinates of a joint, rad: a hinge's servo angle first; hinges of a chain in order; of a ball the twist and two components of
-    /// the swing. Zero for a free joint and past the last one.
-    pub fn angles(&self, joint: usize) -> [f32; 3] {
-        self.joints.get(joint).map_or([0.0; 3], |axes| axes.map(|x| x.at))
+    /// Why a coordinate is not where the last frame told it to be; `None` past the last row.
+    pub fn clamped(&self, index: usize) -> Option<Clamped> {
+        self.clamped.as_flattened().get(index).copied()
     }
 }
 
-impl<const JOINTS: usize> Default for LimitState<JOINTS> {
+impl<const ROWS: usize> Default for LimitState<ROWS> {
     fn default() -> Self {
         Self::new()
     }

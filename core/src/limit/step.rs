@@ -2,181 +2,139 @@
 
 use nalgebra::Vector3;
 
-use super::axis::Coordinate;
-use super::free::{advance as step_within, exp, log, norm};
-use super::model::Row;
-use super::state::{Clamped, Joint};
-use super::{Fault, JointKind, LimitState, Limiter};
-use crate::pose::{Pose, unit};
+use super::axis::{Bounds, Coordinate};
+use super::free;
+use super::model::Limit;
+use super::state::Clamped;
+use super::{LimitState, Limiter};
+use crate::engine::Engine;
+use crate::kernel::sin_cos;
+use crate::pose::Heading;
+use crate::rig::Frame;
 
-/// Further from where it should be, rad or m, a joint counts as clamped.
+/// Further from where it should be, rad or m, a coordinate counts as clamped.
 const CLAMPED: f32 = 1e-5;
 
-impl<const JOINTS: usize> Limiter<'_, JOINTS> {
-    /// Puts the state where the robot is, as far as that lies within the position limits, standing still. Without it the joints
-    /// start at rest, as the table says, and the root at the first sound frame. A pose that is not [sound](Pose::is_sound) is ignored.
-    pub fn start(&self, state: &mut LimitState<JOINTS>, pose: &Pose<JOINTS>) {
+/// No limit.
+const FAR: f32 = 1e6;
+
+impl<const ROWS: usize> Limiter<'_, ROWS> {
+    /// Puts the state where the robot is, as far as that lies within the position limits, standing still. Without it the coordinates
+    /// start at rest, as the table says. A frame that is not [sound](Frame::is_sound) is ignored.
+    pub fn start(&self, state: &mut LimitState<ROWS>, frame: &Frame<ROWS>) {
         state.reset();
         self.at_rest(state);
-        if !pose.is_sound(self.joints()) {
+        if !frame.is_sound() {
             return;
         }
-        (state.rooted, state.pose.root) = (true, pose.root);
-        let joints = state.joints.iter_mut().zip(&mut state.pose.rotations).zip(&pose.rotations);
-        for (((axes, rotation), target), row) in joints.zip(self.rows()) {
-            if row.kind == JointKind::Free {
-                *rotation = unit(target.into_inner());
-            } else {
-                let from = row.neutral.inverse() * target;
-                let wanted = row.frame.coordinates(row.kind, &from, *row.rest, [row.lower, row.upper]);
-                place(axes, &wanted, &row);
-                *rotation = row.rotation(axes);
+        state.heading = Some(frame.heading);
+        let axes = state.axes.as_flattened_mut().iter_mut().zip(frame.coordinates());
+        for (limit, (axis, x)) in self.limits().zip(axes) {
+            if let Some(Limit { bounds, .. }) = limit {
+                *axis = Coordinate { at: x.max(bounds.lower).min(bounds.upper), went: 0.0, left: 0.0 };
             }
         }
     }
 
-    fn at_rest(&self, state: &mut LimitState<JOINTS>) {
+    fn at_rest(&self, state: &mut LimitState<ROWS>) {
         state.started = true;
-        for ((axes, rotation), row) in state.joints.iter_mut().zip(&mut state.pose.rotations).zip(self.rows()) {
-            place(axes, row.rest, &row);
-            *rotation = row.rotation(axes);
+        for (limit, axis) in self.limits().zip(state.axes.as_flattened_mut()) {
+            if let Some(Limit { rest, .. }) = limit {
+                *axis = Coordinate { at: rest, went: 0.0, left: 0.0 };
+            }
         }
     }
 
-    /// Limits one frame: `frame` in, `out` out. Infallible; every loop has a length fixed at load time.
-    ///
-    /// A frame that is missing (`None`) or at [`Fault`](super::Fault) is quarantined: the last sound one stays the target for `hold`
-    /// seconds, then the joints go to rest with the time constant `decay`; the root, position and rotation if it is free, stays where
-    /// it is. The next sound frame is the target again; the way to it keeps all limits, and ends within
-    /// [`recovery_frames`](Self::recovery_frames) if it stands still. Cost: about 400 multiply-adds a joint.
-    pub fn step(&self, state: &mut LimitState<JOINTS>, frame: Option<&Pose<JOINTS>>, out: &mut Pose<JOINTS>) {
-        let checked = self.check(state, frame);
-        self.advance(state, checked, out);
+    /// Limits one frame in place. Infallible; every loop has a length fixed at load time. A frame that is not sound counts as none:
+    /// see [`idle`](Self::idle). Cost: about 30 multiply-adds, two roots and four divisions per coordinate.
+    pub fn step(&self, state: &mut LimitState<ROWS>, frame: &mut Frame<ROWS>) {
+        if !frame.is_sound() {
+            return self.idle(state, frame);
+        }
+        state.report.gap = 0;
+        self.advance(state, frame, true);
     }
 
-    /// The guard: the frame if it is sound.
-    pub(crate) fn check<'f>(
-        &self,
-        state: &mut LimitState<JOINTS>,
-        frame: Option<&'f Pose<JOINTS>>,
-    ) -> Result<&'f Pose<JOINTS>, Fault> {
-        state.guard.check(frame, self.joints(), self.frozen_frames)
+    /// No frame came. The last target stays for `hold` seconds, then the coordinates go to rest with the time constant `decay`, the root's
+    /// height among them; over the ground the root finishes its way and stays. The next sound frame is the target again; the way to it keeps all limits, and ends within
+    /// [`recovery_frames`](Self::recovery_frames) if it stands still.
+    pub fn idle(&self, state: &mut LimitState<ROWS>, frame: &mut Frame<ROWS>) {
+        state.report.gap = state.report.gap.saturating_add(1);
+        self.advance(state, frame, false);
     }
 
-    /// One frame that is sound, or why there is none.
-    pub(crate) fn advance(
-        &self,
-        state: &mut LimitState<JOINTS>,
-        frame: Result<&Pose<JOINTS>, Fault>,
-        out: &mut Pose<JOINTS>,
-    ) {
+    fn advance(&self, state: &mut LimitState<ROWS>, frame: &mut Frame<ROWS>, told: bool) {
         if !state.started {
             self.at_rest(state);
         }
-        let (sound, fault) = (frame.ok(), frame.err());
-        let report = &mut state.report;
-        report.fault = fault;
-        report.frames = report.frames.saturating_add(1);
-        report.gap = if sound.is_some() { 0 } else { report.gap.saturating_add(1) };
-        report.faulty_frames = report.faulty_frames.saturating_add(u32::from(fault.is_some()));
-        let decay = if report.gap > self.hold_frames { self.decay } else { 0.0 };
-
-        let mut clamped = Clamped::default();
-        let mut joints = u32::from(self.root(state, sound.map(|pose| pose.root), &mut clamped));
-        let now = state.joints.iter_mut().zip(&mut state.pose.rotations);
-        for (joint, ((axes, rotation), row)) in now.zip(self.rows()).enumerate() {
-            let before = clamped;
-            let target = sound.and_then(|pose| pose.rotations.get(joint));
-            if row.kind == JointKind::Free {
-                let (went, left) = (step_of(axes), left_of(axes));
-                let error = match target {
-                    Some(target) => log(&unit((target * rotation.inverse()).into_inner())),
-                    None if joint == 0 => left,
-                    None => left + (log(&unit((row.neutral * rotation.inverse()).into_inner())) - left) * decay,
-                };
-                let [speed, ..] = row.speed;
-                let [change, ..] = row.change;
-                let went = step_within(error, went, left, speed, change);
-                *rotation = unit((exp(went) * *rotation).into_inner());
-                let left = error - went;
-                clamped.rate += u16::from(norm(left) > CLAMPED);
-                for ((axis, went), left) in axes.iter_mut().zip(&went).zip(&left) {
-                    *axis = Coordinate { at: 0.0, went: *went, left: *left };
-                }
-            } else {
-                let wanted = match target {
-                    Some(target) => {
-                        let from = row.neutral.inverse() * target;
-                        row.frame.coordinates(row.kind, &from, axes.map(|x| x.at), [row.lower, row.upper])
-                    }
-                    None => towards(axes, row.rest, decay),
-                };
-                let (mut beyond, mut late) = (false, false);
-                let used = row.kind.coordinates();
-                for ((axis, wanted), bounds) in axes.iter_mut().zip(wanted).zip(row.bounds()).take(used) {
-                    let inside = wanted.max(bounds.lower).min(bounds.upper);
-                    *axis = axis.advance(inside, &bounds);
-                    beyond |= (wanted - inside).abs() > CLAMPED;
-                    late |= axis.left.abs() > CLAMPED;
-                }
-                clamped.position += u16::from(beyond);
-                clamped.rate += u16::from(late);
-                *rotation = row.rotation(axes);
-            }
-            joints += u32::from(before != clamped);
+        let decay = if state.report.gap > self.hold_frames { self.decay } else { 0.0 };
+        let (mut position, mut rate) = (0u16, 0u16);
+        let axes = state.axes.as_flattened_mut().iter_mut().zip(state.clamped.as_flattened_mut());
+        for ((limit, (axis, clamped)), x) in self.limits().zip(axes).zip(frame.coordinates_mut()) {
+            let Some(Limit { bounds, rest }) = limit else { continue };
+            let last = axis.at + axis.left;
+            let wanted = if told { *x } else { last + (rest - last) * decay };
+            let inside = wanted.max(bounds.lower).min(bounds.upper);
+            *axis = axis.advance(inside, &bounds);
+            *clamped = Clamped { position: (wanted - inside).abs() > CLAMPED, rate: axis.left.abs() > CLAMPED };
+            position = position.saturating_add(u16::from(clamped.position));
+            rate = rate.saturating_add(u16::from(clamped.rate));
+            *x = axis.at;
+        }
+        if self.rig().travels() {
+            rate += u16::from(self.turn(state, frame, told)) + u16::from(self.travel(state, frame, told));
         }
         let report = &mut state.report;
-        report.clamped = if sound.is_some() { clamped } else { Clamped::default() };
-        if sound.is_some() {
-            report.clamped_joints = report.clamped_joints.saturating_add(joints);
-            report.clamped_frames = report.clamped_frames.saturating_add(u32::from(joints > 0));
-        }
-        *out = state.pose;
+        (report.position, report.rate) = if told { (position, rate) } else { (0, 0) };
+        let any = report.position > 0 || report.rate > 0;
+        report.clamped_frames = report.clamped_frames.saturating_add(u32::from(any));
     }
 
-    /// The root's position; true if it could not follow.
-    fn root(&self, state: &mut LimitState<JOINTS>, target: Option<Vector3<f32>>, clamped: &mut Clamped) -> bool {
-        if let (Some(target), false) = (target, state.rooted) {
-            (state.rooted, state.pose.root) = (true, target);
-        }
-        let error = target.map_or(state.root_left, |target| target - state.pose.root);
-        let went = step_within(error, state.root_went, state.root_left, self.root_speed, self.root_change);
-        let at = state.pose.root + went;
-        (state.root_went, state.root_left) = (went, target.map_or(error - went, |target| target - at));
-        state.pose.root = at;
-        let late = norm(state.root_left) > CLAMPED.max(norm(at) * 1e-6);
-        clamped.rate += u16::from(late);
-        late
+    /// The heading; true if it could not follow. Travel of `frame` is in the source's heading until [`travel`](Self::travel).
+    fn turn(&self, state: &mut LimitState<ROWS>, frame: &mut Frame<ROWS>, told: bool) -> bool {
+        let here = state.heading.unwrap_or(frame.heading);
+        let error = if told { frame.heading.angle_from(here) } else { state.heading_error };
+        let bounds = Bounds { lower: -FAR, upper: FAR, speed: self.heading.speed, change: self.heading.change };
+        let axis = Coordinate { at: 0.0, went: state.heading_step, left: state.heading_error };
+        let axis = axis.advance(error, &bounds);
+        (state.heading_step, state.heading_error) = (axis.went, axis.left);
+        let (sin, cos) = sin_cos(axis.at);
+        state.heading = Some(here.turned(sin, cos));
+        axis.left.abs() > CLAMPED
+    }
+
+    /// The root over the ground; true if it could not follow.
+    fn travel(&self, state: &mut LimitState<ROWS>, frame: &mut Frame<ROWS>, told: bool) -> bool {
+        let heading = state.heading.unwrap_or(Heading::FORWARD);
+        let flat = |[x, z]: [f32; 2]| Vector3::new(x, 0.0, z);
+        let left = flat(state.root_error);
+        let Some(row) = frame.rows.first_mut() else { return false };
+        let [x, _, z] = row;
+        let way =
+            if told { frame.heading.to_world(Vector3::new(*x, 0.0, *z)) + flat(frame.leap) } else { Vector3::zeros() };
+        let error = left + way;
+        let step = free::advance(error, flat(state.root_step), left, self.root.speed, self.root.change);
+        let left = error - step;
+        (state.root_step, state.root_error) = ([step.x, step.z], [left.x, left.z]);
+        let travel = heading.to_local(step);
+        (*x, *z) = (travel.x, travel.z);
+        (frame.heading, frame.leap) = (heading, [0.0; 2]);
+        free::norm(left) > CLAMPED
     }
 }
 
-impl Row<'_> {
-    fn rotation(&self, axes: &Joint) -> nalgebra::UnitQuaternion<f32> {
-        self.neutral * self.frame.compose(self.kind, axes.map(|x| x.at))
+impl<const ROWS: usize> Engine<ROWS> for Limiter<'_, ROWS> {
+    type State = LimitState<ROWS>;
+
+    fn start(&self, state: &mut Self::State, frame: &Frame<ROWS>) {
+        Limiter::start(self, state, frame);
     }
-}
 
-/// Coordinates as wanted, within the bounds, standing still.
-fn place(axes: &mut Joint, wanted: &[f32; 3], row: &Row) {
-    for ((axis, wanted), bounds) in axes.iter_mut().zip(wanted).zip(row.bounds()).take(row.kind.coordinates()) {
-        *axis = Coordinate { at: wanted.max(bounds.lower).min(bounds.upper), went: 0.0, left: 0.0 };
+    fn step(&self, state: &mut Self::State, frame: &mut Frame<ROWS>) {
+        Limiter::step(self, state, frame);
     }
-}
 
-/// The last target, a share of the way to rest nearer to it.
-fn towards(axes: &Joint, rest: &[f32; 3], share: f32) -> [f32; 3] {
-    let mut wanted = [0.0; 3];
-    for ((wanted, axis), rest) in wanted.iter_mut().zip(axes).zip(rest) {
-        let last = axis.at + axis.left;
-        *wanted = last + (rest - last) * share;
+    fn idle(&self, state: &mut Self::State, frame: &mut Frame<ROWS>) {
+        Limiter::idle(self, state, frame);
     }
-    wanted
-}
-
-fn step_of([a, b, c]: &Joint) -> Vector3<f32> {
-    Vector3::new(a.went, b.went, c.went)
-}
-
-fn left_of([a, b, c]: &Joint) -> Vector3<f32> {
-    Vector3::new(a.left, b.left, c.left)
 }

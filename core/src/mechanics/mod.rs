@@ -8,6 +8,7 @@
 //! | `network` | [`BodyMechanics`]: features -> code -> pose without expression |
 //! | `decouple` | [`Decoupler`]: observed = expressive x mechanics, weighted by the activity index |
 //! | `modulate`, `blend` | more or less expression; one's mechanics with another's expression; two motions blended |
+//! | `expression` | [`Expression`]: all of it as one engine |
 //! | `rotation` | angle and power of a rotation |
 //!
 //! All stages are streaming: one frame in, one frame out. A dropped or non-finite frame is held, and does not poison
@@ -16,6 +17,7 @@
 mod blend;
 mod contact;
 mod decouple;
+mod expression;
 mod features;
 mod layers;
 mod modulate;
@@ -25,6 +27,7 @@ mod rotation;
 pub use blend::{Blend, Window};
 pub use contact::{Contacts, Thresholds};
 pub use decouple::{Decoupled, Decoupler};
+pub use expression::{Expression, ExpressionState};
 pub use features::{Body, DynamicFeatures, FEATURES, FeatureState, feature};
 pub use layers::{FARTHEST, INPUT_SCALE, OUTPUT_BITS, Precision};
 pub use modulate::{Modulation, mix, modulate};

@@ -55,6 +55,11 @@ pub enum LoadError {
     },
     /// The metadata cannot be decoded.
     Metadata,
+    /// A number in the metadata is out of its plausible range.
+    Range {
+        /// Name of the number, and what is expected.
+        field: &'static str,
+    },
     /// A tensor is misaligned or reaches past the end of the file.
     Bounds {
         /// Index of the tensor in the metadata.
@@ -131,6 +136,7 @@ impl fmt::Display for LoadError {
                 write!(f, "checksum {found:08x}, expected {expected:08x}: the file is damaged")
             }
             Self::Metadata => f.write_str("the metadata cannot be decoded"),
+            Self::Range { field } => write!(f, "the metadata is out of range: {field}"),
             Self::Bounds { tensor } => write!(f, "tensor {tensor} is misaligned or reaches past the end of the file"),
             Self::NoModel { expected } => write!(f, "the pack holds no {expected}"),
             Self::NoTensor { tensor } => write!(f, "tensor {tensor} is missing"),

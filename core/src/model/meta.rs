@@ -222,25 +222,34 @@ pub struct AttributeMeta<'a> {
     pub strength: [f32; 2],
 }
 
-/// Rates of the root, and what a limiter does when frames fail to come; the joints' limits are tensors.
+/// Rates of the root, and what a limiter does when frames fail to come; the coordinates' limits are tensors.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LimitsMeta {
-    /// Largest speed of the root's position, m/s.
+    /// Largest speed of the root over the ground, m/s.
     pub root_velocity: f32,
-    /// Largest acceleration of the root's position, m/s^2.
+    /// Largest acceleration of the root over the ground, m/s^2.
     pub root_acceleration: f32,
+    /// Largest speed at which a body turns its heading, rad/s.
+    pub heading_velocity: f32,
+    /// Largest acceleration at which a body turns its heading, rad/s^2.
+    pub heading_acceleration: f32,
     /// Time for which the last sound frame is held when none comes, s.
     pub hold: f32,
     /// Time constant with which the joints then go to rest, s.
     pub decay: f32,
-    /// Time after which equal frames count as frozen, s; 0 for never.
-    pub frozen: f32,
 }
 
 impl Default for LimitsMeta {
-    /// 5 m/s, 50 m/s^2; half a second, one second; a second.
+    /// 5 m/s, 50 m/s^2; 10 rad/s, 100 rad/s^2; half a second, one second.
     fn default() -> Self {
-        Self { root_velocity: 5.0, root_acceleration: 50.0, hold: 0.5, decay: 1.0, frozen: 1.0 }
+        Self {
+            root_velocity: 5.0,
+            root_acceleration: 50.0,
+            heading_velocity: 10.0,
+            heading_acceleration: 100.0,
+            hold: 0.5,
+            decay: 1.0,
+        }
     }
 }
 

@@ -1,12 +1,13 @@
 //! The pack: a model file that is checked once and then used in place.
 //!
-//! [`Pack::load`] checks length, alignment, magic, version, kind, checksum, metadata and the bounds of every tensor, in
-//! this order, and copies nothing. Any byte string that loads can be used for ever without a panic; any truncated file and
+//! [`Pack::load`] checks length, alignment, magic, version, kind, checksum, metadata, the ranges of its numbers and the bounds of
+//! every tensor, in this order, and copies nothing. Any byte string that loads can be used for ever without a panic; any truncated file and
 //! any flipped bit is refused with the reason. The format is written down in `docs/pack.md`.
 
 mod error;
 mod meta;
 mod numbers;
+mod ranges;
 mod tensor;
 
 pub use error::LoadError;
@@ -22,7 +23,7 @@ use tensor::payload_in_bounds;
 /// First four bytes of every pack.
 pub const MAGIC: [u8; 4] = *b"KNSC";
 /// Format version that this crate reads and the host writes.
-pub const VERSION: u16 = 1;
+pub const VERSION: u16 = 2;
 /// Bytes before the metadata.
 pub const HEADER_LEN: usize = 20;
 /// Alignment of the pack and of every tensor in it, bytes.
@@ -85,12 +86,14 @@ impl<'a> Pack<'a> {
         }
         let (metadata, rest) = postcard::take_from_bytes::<Metadata>(metadata).map_err(|_| LoadError::Metadata)?;
         let lists_decode = metadata.joints.decodes() && metadata.models.decodes() && metadata.tensors.decodes();
-        let has_rate = metadata.frame_rate.is_finite() && metadata.frame_rate > 0.0;
-        if !(rest.is_empty() && lists_decode && has_rate) {
+        if !(rest.is_empty() && lists_decode) {
             return Err(LoadError::Metadata);
         }
+        ranges::check(&metadata)?;
         payload_in_bounds(&metadata, payload)?;
-        Ok(Self { kind, metadata, payload })
+        let pack = Self { kind, metadata, payload };
+        ranges::check_tensors(&pack)?;
+        Ok(pack)
     }
 
     /// What the file says it holds.

@@ -2,7 +2,7 @@
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-use crate::kernel::sqrt;
+use crate::kernel::{quadrant_angle, sqrt};
 
 use super::skeleton::Across;
 use super::{Skeleton, World, unit};
@@ -17,18 +17,29 @@ pub struct Heading {
 }
 
 impl Default for Heading {
-    /// Facing +Z.
     fn default() -> Self {
-        Self { sin: 0.0, cos: 1.0 }
+        Self::FORWARD
     }
 }
 
 impl Heading {
+    /// Facing +Z.
+    pub const FORWARD: Self = Self { sin: 0.0, cos: 1.0 };
+
+    /// True if it is a direction.
+    pub(crate) fn is_sound(self) -> bool {
+        (0.9..1.1).contains(&(self.sin * self.sin + self.cos * self.cos))
+    }
+
     /// Heading of a pose: square to the horizontal part of the right-to-left axes (the hips, in most packs).
     ///
     /// Where these axes are vertical or of no length, `self` is kept: a body keeps its heading through a cartwheel.
     pub fn follow<const JOINTS: usize>(self, skeleton: &Skeleton, world: &World<JOINTS>) -> Self {
-        let across = across(skeleton.across, &world.positions);
+        self.square_to(across(skeleton.across, &world.positions))
+    }
+
+    /// Heading of a body whose right-to-left axis is `across`, world. Where that is vertical or of no length, `self` is kept.
+    pub fn square_to(self, across: Vector3<f32>) -> Self {
         let (x, z) = (across.x, across.z);
         let norm = sqrt(x * x + z * z);
         // Forward is across x up: (-z, x) in the ground plane.
@@ -63,6 +74,14 @@ impl Heading {
     /// Sine and cosine of the turn from `before` to `self`.
     pub fn turn_from(self, before: Self) -> [f32; 2] {
         [self.sin * before.cos - self.cos * before.sin, self.cos * before.cos + self.sin * before.sin]
+    }
+
+    /// Angle of the turn from `before` to `self`, -pi..pi, to the left.
+    pub(crate) fn angle_from(self, before: Self) -> f32 {
+        let [sin, cos] = self.turn_from(before);
+        let angle = quadrant_angle(sin.abs(), cos.abs(), 1.0);
+        let angle = if cos < 0.0 { core::f32::consts::PI - angle } else { angle };
+        if sin < 0.0 { -angle } else { angle }
     }
 
     /// The heading as a rotation about the vertical.

@@ -18,25 +18,25 @@ pub(super) enum Bank<'a> {
         project: Tiled<'a>,
         /// `B`, `states x drives`.
         input: Tiled<'a>,
-        /// `[C D]`, `3 joints x (states + drives)`, m.
+        /// `[C D]`, `3 rows x (states + drives)`, m.
         output: Tiled<'a>,
     },
 }
 
 impl<'a> Bank<'a> {
-    pub fn load(pack: &Pack<'a>, meta: &TranslatorMeta, joints: usize) -> Result<Self, LoadError> {
+    pub fn load(pack: &Pack<'a>, meta: &TranslatorMeta, rows: usize) -> Result<Self, LoadError> {
         match meta.form {
-            Form::PerJoint => per_joint(pack, meta, joints),
-            Form::WholeBody => whole_body(pack, meta, joints),
+            Form::PerJoint => per_joint(pack, meta, rows),
+            Form::WholeBody => whole_body(pack, meta, rows),
         }
     }
 
-    pub fn multiply_adds(&self, joints: usize) -> usize {
+    pub fn multiply_adds(&self, rows: usize) -> usize {
         match self {
             Self::PerJoint { blocks, .. } => 16 * blocks.len(),
             Self::WholeBody { states, project, input, output, .. } => {
                 let drives = input.columns();
-                2 * states + drives * project.columns() + states * drives + 3 * joints * output.columns()
+                2 * states + drives * project.columns() + states * drives + 3 * rows * output.columns()
             }
         }
     }
@@ -99,8 +99,8 @@ impl<'a> Bank<'a> {
     }
 }
 
-fn per_joint<'a>(pack: &Pack<'a>, meta: &TranslatorMeta, joints: usize) -> Result<Bank<'a>, LoadError> {
-    let counts: &[u16] = pack.slice("translate/blocks_per_joint", joints)?;
+fn per_joint<'a>(pack: &Pack<'a>, meta: &TranslatorMeta, rows: usize) -> Result<Bank<'a>, LoadError> {
+    let counts: &[u16] = pack.slice("translate/blocks_per_joint", rows)?;
     let blocks: &[JointBlock] = pack.slice("translate/joint_blocks", meta.blocks as usize)?;
     let total: usize = counts.iter().map(|count| *count as usize).sum();
     if total != blocks.len() {
@@ -110,7 +110,7 @@ fn per_joint<'a>(pack: &Pack<'a>, meta: &TranslatorMeta, joints: usize) -> Resul
     Ok(Bank::PerJoint { counts, blocks })
 }
 
-fn whole_body<'a>(pack: &Pack<'a>, meta: &TranslatorMeta, joints: usize) -> Result<Bank<'a>, LoadError> {
+fn whole_body<'a>(pack: &Pack<'a>, meta: &TranslatorMeta, rows: usize) -> Result<Bank<'a>, LoadError> {
     let states = 2 * meta.blocks as usize;
     let drives = meta.drives as usize;
     let transition: &[Block] = pack.slice("translate/transition", meta.blocks as usize)?;
@@ -118,9 +118,9 @@ fn whole_body<'a>(pack: &Pack<'a>, meta: &TranslatorMeta, joints: usize) -> Resu
     Ok(Bank::WholeBody {
         states,
         transition,
-        project: Tiled::load(pack, "translate/project", drives, 3 * joints)?,
+        project: Tiled::load(pack, "translate/project", drives, 3 * rows)?,
         input: Tiled::load(pack, "translate/input", states, drives)?,
-        output: Tiled::load(pack, "translate/output", 3 * joints, states + drives)?,
+        output: Tiled::load(pack, "translate/output", 3 * rows, states + drives)?,
     })
 }
 

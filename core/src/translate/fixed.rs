@@ -51,15 +51,15 @@ enum Bank<'a> {
 }
 
 impl<'a> Fixed<'a> {
-    pub fn load(pack: &Pack<'a>, meta: &TranslatorMeta, joints: usize) -> Result<Self, LoadError> {
-        let bias: &[[i32; 3]] = pack.slice("translate/bias", joints)?;
+    pub fn load(pack: &Pack<'a>, meta: &TranslatorMeta, rows: usize) -> Result<Self, LoadError> {
+        let bias: &[[i32; 3]] = pack.slice("translate/bias", rows)?;
         let large = |value: &i32| value.unsigned_abs() > LARGEST_BIAS;
         refuse("translate/bias", bias.as_flattened().iter().position(large))?;
-        let direct: &[FixedDirect] = pack.slice("translate/direct", joints)?;
+        let direct: &[FixedDirect] = pack.slice("translate/direct", rows)?;
         refuse("translate/direct", direct.iter().position(|[.., shift]| !kernel::is_shift(*shift)))?;
         let bank = match meta.form {
-            Form::PerJoint => Bank::per_joint(pack, meta, joints)?,
-            Form::WholeBody => Bank::whole_body(pack, meta, joints)?,
+            Form::PerJoint => Bank::per_joint(pack, meta, rows)?,
+            Form::WholeBody => Bank::whole_body(pack, meta, rows)?,
         };
         let states = match meta.form {
             Form::WholeBody => {
@@ -73,23 +73,23 @@ impl<'a> Fixed<'a> {
             [scale] => *scale,
             _ => [0.0; 2],
         };
-        let input = Rows::load(pack, "translate/timing_input", 1, 3 * joints)?;
+        let input = Rows::load(pack, "translate/timing_input", 1, 3 * rows)?;
         let timing = TimingHead { bias: bias_of_time, range: [low, high], scale, input, states };
         Ok(Self { bias, direct, timing, bank })
     }
 
-    pub fn multiply_adds(&self, joints: usize) -> usize {
+    pub fn multiply_adds(&self, rows: usize) -> usize {
         match &self.bank {
             Bank::PerJoint { blocks, .. } => 16 * blocks.len(),
             Bank::WholeBody { states, project, input, output, .. } => {
                 let drives = input.columns();
-                2 * states + drives * project.columns() + states * drives + 3 * joints * output.columns()
+                2 * states + drives * project.columns() + states * drives + 3 * rows * output.columns()
             }
         }
     }
 
     /// The state that holding `input` for ever leads to, by f32: once, when a stream starts.
-    pub fn settle<const JOINTS: usize>(&self, input: &[[f32; 3]; JOINTS], filters: &mut [i32]) {
+    pub fn settle<const ROWS: usize>(&self, input: &[[f32; 3]; ROWS], filters: &mut [i32]) {
         let input = to_fixed(input);
         self.bank.project(&input, filters);
         match self.bank {
@@ -117,14 +117,14 @@ impl<'a> Fixed<'a> {
     }
 
     /// One frame: `output` in m; log2 of the duration.
-    pub fn step<const JOINTS: usize>(
+    pub fn step<const ROWS: usize>(
         &self,
-        input: &[[f32; 3]; JOINTS],
+        input: &[[f32; 3]; ROWS],
         filters: &mut [i32],
-        output: &mut [[f32; 3]; JOINTS],
+        output: &mut [[f32; 3]; ROWS],
     ) -> f32 {
         let input = to_fixed(input);
-        let mut y = [[0; 3]; JOINTS];
+        let mut y = [[0; 3]; ROWS];
         self.apply_direct(&input, &mut y);
         self.bank.project(&input, filters);
         let log2 = self.timing.evaluate(input.as_flattened(), filters);
@@ -152,7 +152,7 @@ impl<'a> Fixed<'a> {
 
 /// Normalised inputs as integers.
 #[inline(never)]
-fn to_fixed<const JOINTS: usize>(input: &[[f32; 3]; JOINTS]) -> [[i32; 3]; JOINTS] {
+fn to_fixed<const ROWS: usize>(input: &[[f32; 3]; ROWS]) -> [[i32; 3]; ROWS] {
     input.map(|u| u.map(|u| kernel::to_fixed(u, INPUT_BITS, LARGEST_INPUT)))
 }
 
@@ -183,8 +183,8 @@ impl TimingHead<'_> {
 }
 
 impl<'a> Bank<'a> {
-    fn per_joint(pack: &Pack<'a>, meta: &TranslatorMeta, joints: usize) -> Result<Self, LoadError> {
-        let counts: &[u16] = pack.slice("translate/blocks_per_joint", joints)?;
+    fn per_joint(pack: &Pack<'a>, meta: &TranslatorMeta, rows: usize) -> Result<Self, LoadError> {
+        let counts: &[u16] = pack.slice("translate/blocks_per_joint", rows)?;
         let blocks: &[FixedBlock] = pack.slice("translate/joint_blocks", meta.blocks as usize)?;
         let total: usize = counts.iter().map(|count| *count as usize).sum();
         if total != blocks.len() {
@@ -211,7 +211,7 @@ impl<'a> Bank<'a> {
         Ok(Self::PerJoint { counts, blocks })
     }
 
-    fn whole_body(pack: &Pack<'a>, meta: &TranslatorMeta, joints: usize) -> Result<Self, LoadError> {
+    fn whole_body(pack: &Pack<'a>, meta: &TranslatorMeta, rows: usize) -> Result<Self, LoadError> {
         let states = 2 * meta.blocks as usize;
         let drives = meta.drives as usize;
         let transition: &[FixedTransition] = pack.slice("translate/transition", meta.blocks as usize)?;
@@ -224,11 +224,11 @@ impl<'a> Bank<'a> {
         Ok(Self::WholeBody {
             states,
             transition,
-            project: Rows::load(pack, "translate/project", drives, 3 * joints)?,
+            project: Rows::load(pack, "translate/project", drives, 3 * rows)?,
             input: Rows::load(pack, "translate/input", states, drives)?,
             input_shift: shifts("translate/input_shift", states)?,
-            output: Rows::load(pack, "translate/output", 3 * joints, states.saturating_add(drives))?,
-            output_shift: shifts("translate/output_shift", 3 * joints)?,
+            output: Rows::load(pack, "translate/output", 3 * rows, states.saturating_add(drives))?,
+            output_shift: shifts("translate/output_shift", 3 * rows)?,
         })
     }
 

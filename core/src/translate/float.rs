@@ -26,28 +26,28 @@ struct TimingHead<'a> {
 }
 
 impl<'a> Float<'a> {
-    pub fn load(pack: &Pack<'a>, meta: &TranslatorMeta, joints: usize) -> Result<Self, LoadError> {
-        let bank = Bank::load(pack, meta, joints)?;
+    pub fn load(pack: &Pack<'a>, meta: &TranslatorMeta, rows: usize) -> Result<Self, LoadError> {
+        let bank = Bank::load(pack, meta, rows)?;
         let timing_states = match meta.form {
             Form::WholeBody => 2 * meta.blocks as usize + meta.drives as usize,
             Form::PerJoint => 0,
         };
         let [bias, low, high] = timing(pack)?;
         Ok(Self {
-            bias: pack.slice("translate/bias", joints)?,
-            direct: pack.slice("translate/direct", joints)?,
+            bias: pack.slice("translate/bias", rows)?,
+            direct: pack.slice("translate/direct", rows)?,
             timing: TimingHead {
                 bias,
                 range: [low, high],
-                input: pack.slice("translate/timing_input", 3 * joints)?,
+                input: pack.slice("translate/timing_input", 3 * rows)?,
                 states: pack.slice("translate/timing_states", timing_states)?,
             },
             bank,
         })
     }
 
-    pub fn multiply_adds(&self, joints: usize) -> usize {
-        self.bank.multiply_adds(joints)
+    pub fn multiply_adds(&self, rows: usize) -> usize {
+        self.bank.multiply_adds(rows)
     }
 
     /// See [`Bank::settle`].

@@ -11,6 +11,5 @@ mod model;
 mod state;
 mod step;
 
-pub use crate::pose::Controls;
 pub use model::Translator;
 pub use state::{Timing, TranslatorState};

@@ -5,16 +5,16 @@ use super::float::Float;
 use core::marker::PhantomData;
 
 use crate::model::{AnyNumbers, LoadError, ModelMeta, Numbers, Pack, TensorType, TranslatorMeta};
-use crate::pose::Skeleton;
+use crate::rig::Rig;
 
-/// A style translator for up to `JOINTS` joints and `STATES` filter states, borrowed from a pack.
+/// A style translator for up to `ROWS` rows of coordinates and `STATES` filter states, borrowed from a pack.
 ///
 /// Coefficients are f32, or int16 with int32 states (`kinesic quantize --precision i16`): the pack decides. `STATES` counts two for every 2 x 2 block, plus, in the whole-body form, one for every principal coordinate.
 #[derive(Clone, Copy, Debug)]
-pub struct Translator<'a, const JOINTS: usize, const STATES: usize, N = AnyNumbers> {
+pub struct Translator<'a, const ROWS: usize, const STATES: usize, N = AnyNumbers> {
     pub(super) meta: TranslatorMeta<'a>,
-    pub(super) skeleton: Skeleton<'a>,
-    /// Heading-local input: mean, m, and 1 / deviation, 1/m. Row 0 is `[travel x, height, travel z]` of the root.
+    pub(super) rows: usize,
+    /// Input: mean, rad or m, and 1 / deviation.
     pub(super) mean: &'a [[f32; 3]],
     pub(super) inverse_deviation: &'a [[f32; 3]],
     pub(super) linear: Linear<'a>,
@@ -28,14 +28,14 @@ pub(super) enum Linear<'a> {
     Fixed(Fixed<'a>),
 }
 
-impl<'a, const JOINTS: usize, const STATES: usize> Translator<'a, JOINTS, STATES> {
+impl<'a, const ROWS: usize, const STATES: usize> Translator<'a, ROWS, STATES> {
     /// The translator of a pack in any number type, after every check that makes [`step`](Self::step) infallible.
     pub fn load(pack: &Pack<'a>) -> Result<Self, LoadError> {
         Self::load_numbers(pack)
     }
 }
 
-impl<'a, const JOINTS: usize, const STATES: usize, N: Numbers> Translator<'a, JOINTS, STATES, N> {
+impl<'a, const ROWS: usize, const STATES: usize, N: Numbers> Translator<'a, ROWS, STATES, N> {
     /// [`load`](Translator::load) for the number types `N`: `Translator::<J, S, Integers>::load_numbers(&pack)` links no f32 bank.
     pub fn load_numbers(pack: &Pack<'a>) -> Result<Self, LoadError> {
         let meta = pack
@@ -44,21 +44,20 @@ impl<'a, const JOINTS: usize, const STATES: usize, N: Numbers> Translator<'a, JO
             .iter()
             .find_map(ModelMeta::translator)
             .ok_or(LoadError::NoModel { expected: "translator" })?;
-        let skeleton = Skeleton::load(pack)?;
-        let joints = skeleton.joints();
-        fits("JOINTS", joints, JOINTS)?;
+        let rows = Rig::load(pack)?.rows();
+        fits("ROWS", rows, ROWS)?;
         let states = 2 * meta.blocks as usize;
         fits("STATES", states.saturating_add(meta.drives as usize), STATES)?;
         let linear = match pack.number("translate/direct")? {
-            TensorType::F32 if N::FLOAT => Linear::Float(Float::load(pack, &meta, joints)?),
-            TensorType::I16 if N::INTEGER => Linear::Fixed(Fixed::load(pack, &meta, joints)?),
+            TensorType::F32 if N::FLOAT => Linear::Float(Float::load(pack, &meta, rows)?),
+            TensorType::I16 if N::INTEGER => Linear::Fixed(Fixed::load(pack, &meta, rows)?),
             found => return Err(LoadError::NumberType { tensor: "translate/direct", found }),
         };
         Ok(Self {
             meta,
-            skeleton,
-            mean: pack.slice("translate/mean", joints)?,
-            inverse_deviation: pack.slice("translate/inverse_deviation", joints)?,
+            rows,
+            mean: pack.slice("translate/mean", rows)?,
+            inverse_deviation: pack.slice("translate/inverse_deviation", rows)?,
             linear,
             numbers: PhantomData,
         })
@@ -69,19 +68,18 @@ impl<'a, const JOINTS: usize, const STATES: usize, N: Numbers> Translator<'a, JO
         &self.meta
     }
 
-    /// The skeleton that poses must have.
-    pub fn skeleton(&self) -> &Skeleton<'a> {
-        &self.skeleton
+    /// Rows of coordinates.
+    pub fn rows(&self) -> usize {
+        self.rows
     }
 
-    /// Multiply-adds of the recursion of one frame: the bank alone, without kinematics.
+    /// Multiply-adds of one frame.
     pub fn multiply_adds(&self) -> usize {
-        let joints = self.skeleton.joints();
         let recursion = match &self.linear {
-            Linear::Float(linear) => linear.multiply_adds(joints),
-            Linear::Fixed(linear) => linear.multiply_adds(joints),
+            Linear::Float(linear) => linear.multiply_adds(self.rows),
+            Linear::Fixed(linear) => linear.multiply_adds(self.rows),
         };
-        9 * joints + recursion
+        9 * self.rows + recursion
     }
 
     /// Number type of the coefficients: f32, or i16 with int32 states and sums.

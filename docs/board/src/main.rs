@@ -4,11 +4,18 @@
 
 mod motion;
 
-use kinesic::{Pack, Pose, Translator, TranslatorState};
+use kinesic::{Pack, Pipeline, PipelineState, Pose, Translator, TranslatorState};
 use semihosting::{println, process};
 
-/// `kinesic inspect weary.kin` prints the two capacities.
-type Style = Translator<'static, 19, 60>;
+// Capacities: `kinesic inspect weary.kin` prints the least that they must be.
+const ROWS: usize = 20;
+const STATES: usize = 60;
+
+/// The engine between pose and pose. With joint limits in the pack: `(Translator<..>, Limiter<'static, ROWS>)`.
+type Style = Pipeline<'static, Translator<'static, ROWS, STATES>, ROWS>;
+
+/// What it remembers; with limits `(TranslatorState<..>, LimitState<ROWS>)`.
+type State = PipelineState<TranslatorState<ROWS, STATES>, ROWS>;
 
 /// In flash, aligned, used in place.
 static PACK: &[u8] = kinesic::include_pack!("../../../models/weary.kin");
@@ -24,17 +31,19 @@ fn main() -> ! {
             process::exit(1)
         }
     };
-    let mut state = TranslatorState::new();
-    state.controls.strength = 0.8;
+    let mut state = State::new();
+    state.engine.controls.strength = 0.8;
     let mut styled = Pose::identity();
     // On a board: `loop`, and wait for a timer that fires 60 times a second.
     for frame in 0..motion::FRAMES {
+        // A frame that is missing or garbled never reaches the filters: what was shown last is held.
         let source = motion::read_pose(frame);
-        style.step(&mut state, &source, &mut styled);
-        if frame % 30 == 29 {
+        style.step(&mut state, source.as_ref(), &mut styled);
+        if frame % 25 == 24 {
             // On a board: angles to the servos.
-            println!("frame {frame}: neck bends by {} milliradians", motion::neck(&styled));
+            println!("frame {frame}: the left arm is turned by {} milliradians", motion::arm(&styled));
         }
     }
+    println!("{} of {} frames were held", state.report().faulty, state.report().frames);
     process::exit(0)
 }

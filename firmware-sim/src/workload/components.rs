@@ -6,7 +6,7 @@ use kinesic_host::clip::Clip;
 use kinesic_host::components::{ComponentsModel, Factors, Motion};
 use kinesic_host::pack::Provenance;
 use kinesic_host::rig::Rig;
-use kinesic_workloads::components::{COUNT, JOINTS, Restyle};
+use kinesic_workloads::posed::{COUNT, Restyle, SHORT_JOINTS as JOINTS};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 
@@ -28,19 +28,19 @@ pub fn prepare(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
 
 /// The pack for a walk on a rig.
 pub fn pack(rig: &Rig, walk: &Clip) -> Vec<u8> {
-    let joints = rig.joints();
+    let rows = rig.rows();
     let poses = rig.poses(walk);
-    let Motion { mean, scale, .. } = Motion::new(&rig.locals(&poses));
+    let Motion { mean, scale, .. } = Motion::new(rig, &rig.locals(&poses));
     let mut random = ChaCha8Rng::seed_from_u64(SEED);
     let mut matrix = |rows: usize, columns: usize, size: f64| -> Mat<f64> {
         Mat::from_fn(rows, columns, |_, _| random.random_range(-size..size))
     };
-    let mut components = matrix(3 * joints, COUNT, 0.5);
-    let change = matrix(3 * joints, COUNT, 0.1);
+    let mut components = matrix(3 * rows, COUNT, 0.5);
+    let change = matrix(3 * rows, COUNT, 0.1);
     let weights = matrix(STORED, COUNT, 1.0);
     for k in 0..COUNT {
-        for joint in (0..joints).filter(|_| random.random_bool(1.0 - DENSITY)).collect::<Vec<_>>() {
-            (0..3).for_each(|axis| components[(3 * joint + axis, k)] = 0.0);
+        for row in (0..rows).filter(|_| random.random_bool(1.0 - DENSITY)).collect::<Vec<_>>() {
+            (0..3).for_each(|axis| components[(3 * row + axis, k)] = 0.0);
         }
     }
     let model = ComponentsModel {
@@ -52,7 +52,6 @@ pub fn pack(rig: &Rig, walk: &Clip) -> Vec<u8> {
         learned: &components + &change,
         content: Factors { weights, components },
         track: vec![[0.0, 0.02, 0.0, 1.0]; STORED],
-        reference: poses[0].rotations[..joints].iter().map(|rotation| rotation.coords.into()).collect(),
         strength: [0.0, 1.0],
     };
     let provenance = Provenance { tool: "kinesic-firmware-sim".to_owned(), seed: SEED, ..Provenance::default() };

@@ -4,7 +4,7 @@
 use kinesic_host::limit::{JointLimit, LimitsModel};
 use kinesic_host::pack::Provenance;
 use kinesic_host::rig::Rig;
-use kinesic_workloads::limit::{JOINTS, Limit};
+use kinesic_workloads::posed::{Limit, SHORT_JOINTS};
 
 use super::translator::numbers;
 use super::{Prepared, WorkloadError, on_host};
@@ -19,12 +19,12 @@ pub fn prepare(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
     let rig = made::short_rig();
     let provenance = Provenance { tool: "kinesic-firmware-sim".to_owned(), seed: SEED, ..Provenance::default() };
     let walk = made::walk_on(&rig.skeleton, frames, SEED);
-    on_host::<Limit>(name, "limit.kin", limits(&rig).pack(&rig, &provenance), &numbers(&rig, &walk, JOINTS))
+    on_host::<Limit>(name, "limit.kin", limits(&rig).pack(&rig, &provenance)?, &numbers(&rig, &walk, SHORT_JOINTS))
 }
 
 /// The limits of a rig whose joints have the made body's names.
 pub fn limits(rig: &Rig) -> LimitsModel {
-    let mut model = LimitsModel::free("made", FRAME_RATE, rig.joints(), 6.0, 60.0);
+    let mut model = LimitsModel::free("made", FRAME_RATE, rig, 6.0, 60.0);
     for (limit, joint) in model.joints.iter_mut().zip(&rig.skeleton.joints).skip(1) {
         let is = |ends: &[&str]| ends.iter().any(|end| joint.name.ends_with(end));
         *limit = if is(&["ForeArm", "tLeg"]) && !is(&["UpLeg"]) {
@@ -32,7 +32,7 @@ pub fn limits(rig: &Rig) -> LimitsModel {
         } else if is(&["tArm", "UpLeg"]) {
             JointLimit::chain([X, Y, Z], [-0.3; 3], [0.3; 3], 3.0, 30.0)
         } else {
-            JointLimit::ball([Y, Z, X], [-0.2; 3], [0.2; 3], 3.0, 30.0)
+            JointLimit::ball([-0.2; 3], [0.2; 3], 3.0, 30.0)
         };
     }
     model

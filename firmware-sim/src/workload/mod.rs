@@ -13,6 +13,8 @@ mod modal;
 mod network;
 mod pipeline;
 pub mod recorded;
+mod servos;
+mod styled;
 mod translator;
 
 use std::path::PathBuf;
@@ -69,6 +71,9 @@ pub enum WorkloadError {
         /// Why.
         source: std::io::Error,
     },
+    /// Tables do not make a pack.
+    #[error(transparent)]
+    Load(#[from] kinesic::LoadError),
     /// A pack of the repository holds no skeleton.
     #[error(transparent)]
     Rig(#[from] RigError),
@@ -110,6 +115,10 @@ const ALL: &[(&str, Make)] = &[
     ("face", face::prepare),
     ("emotion-change", emotion::change),
     ("emotion-play", emotion::play),
+    ("styled", styled::float),
+    ("styled-i16", styled::fixed),
+    ("servos", servos::float),
+    ("servos-i16", servos::fixed),
     ("pipeline", pipeline::float),
     ("pipeline-int", pipeline::integer),
     ("kernel-f32", kernel::f32),

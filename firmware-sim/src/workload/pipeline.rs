@@ -8,7 +8,8 @@ use kinesic_host::emotion::made::{Moment, over};
 use kinesic_host::pack::{PackFile, PackWriter, Provenance};
 use kinesic_host::quantise::{to_int8, to_int16};
 use kinesic_host::rig::Rig;
-use kinesic_workloads::pipeline::{COUNT, JOINTS, KEYS, Whole};
+use kinesic_workloads::mechanics::JOINTS;
+use kinesic_workloads::posed::{COUNT, KEYS, Whole};
 
 use super::translator::numbers;
 use super::{Prepared, WorkloadError, aligned, components, limit, mechanics, on_host, translator};
@@ -69,6 +70,8 @@ fn prepare(
     let model = mechanics::model()?;
     let words = aligned(&model);
     let rig = Rig::from_pack(&Pack::load(&bytemuck::cast_slice(&words)[..model.len()]).map_err(refused)?)?;
+    let limits = limit::limits(&rig);
+    let rig = limits.rig(&rig)?;
     let walk = made::walk_on(&rig.skeleton, frames, SEED);
     let mut pack = PackWriter::new(Kind::Style, "made", FRAME_RATE as f32);
     rig.write(&mut pack);
@@ -84,6 +87,9 @@ fn prepare(
         let part = Pack::load(&bytemuck::cast_slice(&words)[..part.len()]).map_err(refused)?;
         pack.copy_models(&part).map_err(refused)?;
     }
-    limit::limits(&rig).write(&mut pack);
-    on_host::<Whole>(name, pack_name, pack.finish(&provenance()), &numbers(&rig, &walk, JOINTS))
+    let pack = pack.finish(&provenance());
+    let words = aligned(&pack);
+    let pack = Pack::load(&bytemuck::cast_slice(&words)[..pack.len()]).map_err(refused)?;
+    let pack = limits.pack_with(&pack, &rig, &provenance())?;
+    on_host::<Whole>(name, pack_name, pack, &numbers(&rig, &walk, JOINTS))
 }

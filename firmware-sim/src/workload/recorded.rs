@@ -7,7 +7,7 @@ use kinesic::{Pack, Translator};
 use kinesic_host::pack::Provenance;
 use kinesic_host::prepare::Source;
 use kinesic_host::translate::{FormChoice, TrainOptions, TrainPair, train};
-use kinesic_workloads::translator::{RECORDED_JOINTS, Recorded};
+use kinesic_workloads::posed::{RECORDED_JOINTS, Recorded};
 
 use super::translator::numbers;
 use super::{Prepared, WorkloadError, aligned, on_host};
@@ -35,11 +35,13 @@ pub fn train_both(data: &Path, frames: usize) -> Result<Vec<Trained>, WorkloadEr
     let read = |name: &str| Source::read(&data.join(name), &Default::default());
     let neutral = read(NEUTRAL)?;
     let rig = neutral.rig()?;
+    let poses = [rig.poses(&neutral.on_rig(&rig, FPS)?), rig.poses(&read(STYLED)?.on_rig(&rig, FPS)?)];
+    let rig = rig.centred(&[&poses[0], &poses[1]]);
     let pair = TrainPair {
         source_name: NEUTRAL.to_owned(),
         target_name: STYLED.to_owned(),
-        source: rig.locals(&rig.poses(&neutral.on_rig(&rig, FPS)?)),
-        target: rig.locals(&rig.poses(&read(STYLED)?.on_rig(&rig, FPS)?)),
+        source: rig.locals(&poses[0]),
+        target: rig.locals(&poses[1]),
     };
     let mut input = numbers(&rig, &read(WALKER)?.on_rig(&rig, FPS)?, RECORDED_JOINTS);
     input.truncate(frames);
@@ -58,8 +60,8 @@ fn shape(name: &str, pack: &[u8]) -> Result<String, WorkloadError> {
     let refused = |_| WorkloadError::Refused { name: name.to_owned() };
     let words = aligned(pack);
     let pack = Pack::load(&bytemuck::cast_slice(&words)[..pack.len()]).map_err(refused)?;
-    let model = Translator::<RECORDED_JOINTS, { RECORDED_JOINTS * 40 }>::load(&pack).map_err(refused)?;
+    let model = Translator::<{ RECORDED_JOINTS + 1 }, { (RECORDED_JOINTS + 1) * 40 }>::load(&pack).map_err(refused)?;
     let states = 2 * model.meta().blocks;
-    let (joints, multiply_adds) = (model.skeleton().joints(), model.multiply_adds());
-    Ok(format!("{joints} joints, {states} filter states, {multiply_adds} multiply-adds in the recursion"))
+    let (rows, multiply_adds) = (model.rows(), model.multiply_adds());
+    Ok(format!("{rows} rows of coordinates, {states} filter states, {multiply_adds} multiply-adds"))
 }

@@ -4,9 +4,9 @@
 use kinesic_host::clip::Clip;
 use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_host::quantise::to_int16;
-use kinesic_host::rig::Rig;
+use kinesic_host::rig::{Locals, Rig};
 use kinesic_host::translate::{BankModel, TimingModel, TranslatorModel};
-use kinesic_workloads::translator::{JOINTS, PerJoint, PerJointFixed, WholeBody, WholeBodyFixed};
+use kinesic_workloads::posed::{JOINTS, PerJoint, PerJointFixed, WholeBody, WholeBodyFixed};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 
@@ -28,7 +28,7 @@ pub fn per_joint_fixed(name: &str, frames: usize) -> Result<Prepared, WorkloadEr
     on_host::<PerJointFixed>(name, "translator-i16.kin", fixed(&pack)?, &frames)
 }
 
-fn fixed(pack: &[u8]) -> Result<Vec<u8>, WorkloadError> {
+pub fn fixed(pack: &[u8]) -> Result<Vec<u8>, WorkloadError> {
     let provenance = Provenance { tool: "kinesic-firmware-sim".to_owned(), seed: SEED, ..Provenance::default() };
     Ok(to_int16(&PackFile::from_bytes(pack), &provenance)?)
 }
@@ -39,13 +39,13 @@ fn made_per_joint(frames: usize) -> (Vec<u8>, Vec<Vec<f32>>) {
         let [a, b, c, d] = stable(&mut random);
         let mut block: [f64; 16] = std::array::from_fn(|_| random.random_range(-0.05..0.05));
         block[..4].copy_from_slice(&[a, b, c, d]);
-        // Output columns are in metres.
         block[10..].iter_mut().for_each(|c| *c *= 0.05);
         block
     };
-    let bank = (0..JOINTS).map(|_| (0..ORDER / 2).map(|_| block()).collect()).collect();
     let (rig, clip) = (made::rig(), made::walk(frames, SEED));
-    (pack(&rig, &clip, BankModel::PerJoint(bank), Vec::new()), numbers(&rig, &clip, JOINTS))
+    let bank = (0..rig.rows()).map(|_| (0..ORDER / 2).map(|_| block()).collect()).collect();
+    let motion = rig.locals(&rig.poses(&clip));
+    (pack(&rig, &motion, BankModel::PerJoint(bank), Vec::new()), numbers(&rig, &clip, JOINTS))
 }
 
 pub fn whole_body(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
@@ -66,20 +66,25 @@ fn made_whole_body(frames: usize) -> (Vec<u8>, Vec<Vec<f32>>) {
 
 /// The pack of one model for all joints of a rig.
 pub fn shared(rig: &Rig, clip: &Clip) -> Vec<u8> {
-    let channels = 3 * rig.joints();
+    shared_over(rig, &rig.locals(&rig.poses(clip)), DRIVES)
+}
+
+/// The same for any motion, behind so many principal coordinates.
+pub fn shared_over(rig: &Rig, motion: &Locals, drives: usize) -> Vec<u8> {
+    let channels = 3 * rig.rows();
     let mut random = ChaCha8Rng::seed_from_u64(SEED);
     let transition = (0..ORDER / 2).map(|_| stable(&mut random)).collect();
     let mut matrix = |rows: usize, columns: usize, size: f64| -> Vec<f64> {
         (0..rows * columns).map(|_| random.random_range(-size..size)).collect()
     };
     let bank = BankModel::WholeBody {
-        project: matrix(DRIVES, channels, 0.2),
+        project: matrix(drives, channels, 0.2),
         transition,
-        input: matrix(ORDER, DRIVES, 0.1),
-        output: matrix(channels, ORDER + DRIVES, 0.002),
+        input: matrix(ORDER, drives, 0.1),
+        output: matrix(channels, ORDER + drives, 0.002),
     };
-    let states = matrix(1, ORDER + DRIVES, 0.01);
-    pack(rig, clip, bank, states)
+    let states = matrix(1, ORDER + drives, 0.01);
+    pack(rig, motion, bank, states)
 }
 
 /// A rotation-scaling block with poles inside the unit circle.
@@ -89,10 +94,10 @@ fn stable(random: &mut ChaCha8Rng) -> [f64; 4] {
     [re, -im, im, re]
 }
 
-/// The pack around a bank, for a walk on a rig.
-fn pack(rig: &Rig, clip: &Clip, bank: BankModel, timing_states: Vec<f64>) -> Vec<u8> {
-    let channels = 3 * rig.joints();
-    let (mean, deviation) = moments(rig, clip);
+/// The pack around a bank, for a motion on a rig.
+fn pack(rig: &Rig, motion: &Locals, bank: BankModel, timing_states: Vec<f64>) -> Vec<u8> {
+    let channels = 3 * rig.rows();
+    let (mean, deviation) = moments(motion);
     let mut direct = vec![0.0; 3 * channels];
     for (channel, deviation) in deviation.iter().enumerate() {
         direct[channel / 3 * 9 + channel % 3 * 4] = 0.9 * deviation;
@@ -112,20 +117,13 @@ fn pack(rig: &Rig, clip: &Clip, bank: BankModel, timing_states: Vec<f64>) -> Vec
     model.pack(rig, &provenance)
 }
 
-/// Mean and deviation of each heading-local channel; the root's row is its travel and height.
-fn moments(rig: &Rig, clip: &Clip) -> (Vec<f64>, Vec<f64>) {
-    let locals = rig.locals(&rig.poses(clip));
-    let channels = 3 * rig.joints();
-    let frames = locals.frames() as f64;
+/// Mean and deviation of each coordinate.
+fn moments(motion: &Locals) -> (Vec<f64>, Vec<f64>) {
+    let (channels, frames) = (3 * motion.rows, motion.frames() as f64);
     let mut mean = vec![0.0; channels];
     let mut square = vec![0.0; channels];
-    for (row, travel) in locals.positions.chunks_exact(channels).zip(&locals.travel) {
+    for row in motion.coordinates.chunks_exact(channels) {
         for (channel, value) in row.iter().enumerate() {
-            let value = match channel {
-                0 => travel[0],
-                2 => travel[1],
-                _ => *value,
-            };
             mean[channel] += value / frames;
             square[channel] += value * value / frames;
         }

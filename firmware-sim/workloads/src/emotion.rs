@@ -1,12 +1,12 @@
 //! An emotion of a strength: a change of it, and a frame of playback, through the very `Emotion` of the product.
 
 use kinesic::emotion::{Emotion, EmotionState};
-use kinesic::{Pack, Pose};
+use kinesic::{Frame, Pack};
 
-use crate::{Digest, Refused, Workload, pose};
+use crate::{Digest, Refused, Workload};
 
-/// Joints of the made gait.
-pub const JOINTS: usize = 19;
+/// Rows of the made gait's coordinates: 19 joints and the root.
+pub const ROWS: usize = 20;
 /// Keyframes, the paper's.
 pub const KEYS: usize = 13;
 /// Components of a keyframe, the paper's.
@@ -20,14 +20,14 @@ pub struct Change;
 #[derive(Clone, Copy, Debug)]
 pub struct Play;
 
-type Model<'p> = Emotion<'p, JOINTS, KEYS, COMPONENTS>;
+type Model<'p> = Emotion<'p, ROWS, KEYS, COMPONENTS>;
 
-/// RAM of a motion and its caller: the state, the time that passes and the pose that goes out.
+/// RAM of a motion and its caller: the state, the time that passes and the frame that goes out.
 #[derive(Clone, Debug)]
 pub struct Running {
-    state: EmotionState<JOINTS, KEYS>,
+    state: EmotionState<ROWS, KEYS>,
     dt: f32,
-    pose: Pose<JOINTS>,
+    frame: Frame<ROWS>,
 }
 
 fn open(pack: &[u8]) -> Result<Model<'_>, Refused> {
@@ -38,7 +38,7 @@ fn open(pack: &[u8]) -> Result<Model<'_>, Refused> {
 fn power_on(model: &Model) -> Running {
     let mut state = EmotionState::new();
     model.change(&mut state);
-    Running { state, dt: 0.0, pose: Pose::identity() }
+    Running { state, dt: 0.0, frame: Frame::new() }
 }
 
 /// An input frame is a strength and the time that passes, s.
@@ -47,7 +47,12 @@ fn numbers(input: &[u8]) -> [f32; 2] {
     [numbers.next().unwrap_or(0.0), numbers.next().unwrap_or(0.0)]
 }
 
-/// A frame is played before each change, so that its pose shows every bit of the change before.
+fn output(frame: &Frame<ROWS>, digest: &mut Digest) {
+    frame.coordinates().iter().chain(&frame.ground).for_each(|x| digest.float(*x));
+    frame.heading.forward().iter().for_each(|x| digest.float(*x));
+}
+
+/// A frame is played before each change, so that its coordinates show every bit of the change before.
 impl Workload for Change {
     type Model<'p> = Model<'p>;
     type State = Running;
@@ -62,7 +67,7 @@ impl Workload for Change {
 
     fn load(model: &Self::Model<'_>, running: &mut Self::State, input: &[u8]) {
         let [strength, dt] = numbers(input);
-        model.step(&mut running.state, dt, &mut running.pose);
+        model.step(&mut running.state, dt, &mut running.frame);
         if let Some(first) = running.state.strength.first_mut() {
             *first = strength;
         }
@@ -74,7 +79,7 @@ impl Workload for Change {
     }
 
     fn output(_: &Self::Model<'_>, running: &Self::State, digest: &mut Digest) {
-        pose::output(&running.pose, digest);
+        output(&running.frame, digest);
         digest.float(running.state.seconds());
     }
 }
@@ -98,11 +103,11 @@ impl Workload for Play {
 
     #[inline(always)]
     fn step(model: &Self::Model<'_>, running: &mut Self::State) {
-        model.step(&mut running.state, running.dt, &mut running.pose);
+        model.step(&mut running.state, running.dt, &mut running.frame);
     }
 
     fn output(_: &Self::Model<'_>, running: &Self::State, digest: &mut Digest) {
-        pose::output(&running.pose, digest);
+        output(&running.frame, digest);
         let (key, part) = running.state.phase();
         digest.word(key as u32);
         digest.float(part);

@@ -5,19 +5,17 @@
 #![no_std]
 
 pub mod arithmetic;
-pub mod components;
 mod digest;
 pub mod emotion;
 pub mod face;
 mod frames;
 pub mod kernel;
-pub mod limit;
 pub mod mechanics;
 pub mod modal;
 pub mod peer;
-pub mod pipeline;
 pub mod pose;
-pub mod translator;
+pub mod posed;
+pub mod servos;
 
 pub use digest::Digest;
 pub use frames::Frames;

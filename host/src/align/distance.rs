@@ -32,6 +32,19 @@ struct Cell {
 
 const NOWHERE: Cell = Cell { cost: f64::INFINITY, length: 0, skipped: 0 };
 
+/// How a path came to a cell.
+#[derive(Debug, Clone, Copy)]
+enum Step {
+    /// It begins here.
+    Start,
+    /// Both clips went on.
+    Both,
+    /// The first clip went on.
+    First,
+    /// The second clip went on.
+    Second,
+}
+
 /// Aligned RMS joint distance of two clips of joint positions, `[frames x 3 joints]` each, in the unit of the positions.
 ///
 /// The path of steps (1, 0), (0, 1), (1, 1) from first to last frames, unconstrained otherwise, with the smallest sum of squared
@@ -51,46 +64,10 @@ pub fn aligned_rms(p: Series<'_>, q: Series<'_>) -> Result<f64, AlignError> {
 /// # Errors
 /// As [`aligned_rms`], and a fraction out of its range.
 pub fn aligned_distance(p: Series<'_>, q: Series<'_>, ends: Ends) -> Result<AlignedDistance, AlignError> {
-    ends.check()?;
-    check_pair(p, q, 1)?;
-    if !p.channels().is_multiple_of(3) {
-        return Err(AlignError::NotPositions { channels: p.channels() });
-    }
+    check(p, q, ends)?;
     let clips = Clips::new(p, q);
-    let frames = (p.frames() + q.frames()) as f64;
-    let mut found = clips.search([0, 0], 0.0);
-    let slack = [ends.slack(p.frames()), ends.slack(q.frames())];
-    if slack != [0, 0] {
-        let mut price = found.cost / frames;
-        for _ in 0..ROUNDS {
-            found = clips.search(slack, price);
-            let next = found.distance(price) / (frames - f64::from(found.skipped));
-            if next >= price * (1.0 - 1e-6) {
-                break;
-            }
-            price = next;
-        }
-        found.cost = found.distance(price);
-    }
-    let joints = p.channels() / 3;
-    let entries = f64::from(found.length.max(1));
-    Ok(AlignedDistance {
-        rms: (found.cost.max(0.0) / (entries * joints as f64)).sqrt(),
-        path_len: found.length as usize,
-        joints,
-        unmatched: found.skipped as usize,
-    })
-}
-
-impl Cell {
-    /// The cost without the price of what was left out.
-    fn distance(&self, price: f64) -> f64 {
-        self.cost - price * f64::from(self.skipped)
-    }
-
-    fn better(self, other: Self) -> Self {
-        if other.cost < self.cost { other } else { self }
-    }
+    let (found, _) = clips.best(ends, [p.frames(), q.frames()]);
+    Ok(found.distance(p.channels()))
 }
 
 /// The matches `(frame of p, frame of q)` of the path of [`aligned_rms`], from first to last frames.
@@ -100,40 +77,78 @@ impl Cell {
 /// # Errors
 /// As [`aligned_rms`].
 pub fn aligned_path(p: Series<'_>, q: Series<'_>) -> Result<Vec<(usize, usize)>, AlignError> {
-    check_pair(p, q, 1)?;
+    aligned(p, q, Ends::Closed).map(|(_, path)| path)
+}
+
+/// [`aligned_distance`] and the matches of its path, `(frame of p, frame of q)`.
+///
+/// O(n m x joints) time and a byte for each of the `n m` pairs of frames.
+///
+/// # Errors
+/// As [`aligned_distance`].
+pub fn aligned(p: Series<'_>, q: Series<'_>, ends: Ends) -> Result<(AlignedDistance, Vec<(usize, usize)>), AlignError> {
+    check(p, q, ends)?;
     let clips = Clips::new(p, q);
-    let m = clips.tiles.frames();
-    let mut local = vec![0.0f32; m.div_ceil(TILE) * TILE];
-    let mut above = vec![f64::INFINITY; m];
-    let mut steps: Vec<[bool; 2]> = Vec::with_capacity(p.frames() * m);
-    for (i, source) in clips.rows.chunks_exact(clips.channels).enumerate() {
-        clips.tiles.distances(source, 0, &mut local);
-        let (mut left, mut diagonal) = (f64::INFINITY, f64::INFINITY);
-        for (j, (cell, &d)) in above.iter_mut().zip(&local).enumerate() {
-            let up = *cell;
-            // Equal costs take the diagonal, the shorter path.
-            let (from, step) = if diagonal <= up && diagonal <= left {
-                (diagonal, [true, true])
-            } else if up <= left {
-                (up, [true, false])
-            } else {
-                (left, [false, true])
-            };
-            let from = if i + j == 0 { 0.0 } else { from };
-            *cell = from + f64::from(d);
-            (left, diagonal) = (*cell, up);
-            steps.push(step);
-        }
+    let frames = [p.frames(), q.frames()];
+    let (found, price) = clips.best(ends, frames);
+    let mut steps = Vec::with_capacity(frames[0] * frames[1]);
+    let slack = frames.map(|frames| ends.slack(frames));
+    let end = clips.search(slack, price, |step| steps.push(step)).end;
+    Ok((found.distance(p.channels()), path(&steps, end, frames[1])))
+}
+
+fn check(p: Series<'_>, q: Series<'_>, ends: Ends) -> Result<(), AlignError> {
+    ends.check()?;
+    check_pair(p, q, 1)?;
+    match p.channels() {
+        channels if channels.is_multiple_of(3) => Ok(()),
+        channels => Err(AlignError::NotPositions { channels }),
     }
-    let (mut i, mut j) = (p.frames() - 1, m - 1);
+}
+
+/// The path that ends in a cell of the table of steps, `[frames of p x frames of q]`.
+fn path(steps: &[Step], (mut i, mut j): (usize, usize), width: usize) -> Vec<(usize, usize)> {
     let mut path = vec![(i, j)];
-    while (i, j) != (0, 0) {
-        let [back_i, back_j] = steps[i * m + j];
-        (i, j) = (i - usize::from(back_i), j - usize::from(back_j));
+    loop {
+        match steps[i * width + j] {
+            Step::Start => break,
+            Step::Both => (i, j) = (i - 1, j - 1),
+            Step::First => i -= 1,
+            Step::Second => j -= 1,
+        }
         path.push((i, j));
     }
     path.reverse();
-    Ok(path)
+    path
+}
+
+/// The cheapest path, without the price of what it left out.
+#[derive(Clone, Copy, Debug)]
+struct Found {
+    cost: f64,
+    length: u32,
+    skipped: u32,
+    /// Its last cell.
+    end: (usize, usize),
+}
+
+impl Found {
+    fn distance(&self, channels: usize) -> AlignedDistance {
+        let joints = channels / 3;
+        let entries = f64::from(self.length.max(1));
+        AlignedDistance {
+            rms: (self.cost.max(0.0) / (entries * joints as f64)).sqrt(),
+            path_len: self.length as usize,
+            joints,
+            unmatched: self.skipped as usize,
+        }
+    }
+}
+
+impl Cell {
+    fn better(self, other: Self) -> Self {
+        if other.cost < self.cost { other } else { self }
+    }
 }
 
 struct Clips {
@@ -159,23 +174,56 @@ impl Clips {
         Self { rows, channels, tiles }
     }
 
+    /// The cheapest path between these ends, and the price of a frame that it leaves out.
+    fn best(&self, ends: Ends, frames: [usize; 2]) -> (Found, f64) {
+        let slack = frames.map(|frames| ends.slack(frames));
+        let mut found = self.search([0, 0], 0.0, |_| {});
+        if slack == [0, 0] {
+            return (found, 0.0);
+        }
+        let frames = (frames[0] + frames[1]) as f64;
+        let mut price = found.cost / frames;
+        let mut paid = price;
+        for _ in 0..ROUNDS {
+            paid = price;
+            found = self.search(slack, paid, |_| {});
+            let next = found.cost / (frames - f64::from(found.skipped));
+            if next >= price * (1.0 - 1e-6) {
+                break;
+            }
+            price = next;
+        }
+        (found, paid)
+    }
+
     /// The cheapest path where up to `slack` frames may be left out at each end for `price` each. Equal costs take the
-    /// diagonal, the shorter path.
-    fn search(&self, slack: [usize; 2], price: f64) -> Cell {
+    /// diagonal, the shorter path. `keep` hears of the step into every cell, row by row.
+    fn search(&self, slack: [usize; 2], price: f64, mut keep: impl FnMut(Step)) -> Found {
         let (n, m) = (self.rows.len() / self.channels, self.tiles.frames());
         let mut local = vec![0.0f32; m.div_ceil(TILE) * TILE];
         let mut previous = vec![NOWHERE; m];
         let mut row = vec![NOWHERE; m];
-        let mut best = NOWHERE;
+        let (mut best, mut end) = (NOWHERE, (0, 0));
         for (i, source) in self.rows.chunks_exact(self.channels).enumerate() {
             self.tiles.distances(source, 0, &mut local);
             let (mut left, mut diagonal) = (NOWHERE, NOWHERE);
             for (j, ((cell, &above), &d)) in row.iter_mut().zip(&previous).zip(&local).enumerate() {
                 let mut from = diagonal.better(above).better(left);
+                let mut step = if diagonal.cost <= from.cost {
+                    Step::Both
+                } else if above.cost <= from.cost {
+                    Step::First
+                } else {
+                    Step::Second
+                };
                 if (i == 0 && j <= slack[1]) || (j == 0 && i <= slack[0]) {
                     let skipped = (i + j) as u32;
-                    from = from.better(Cell { cost: price * f64::from(skipped), length: 0, skipped });
+                    let start = Cell { cost: price * f64::from(skipped), length: 0, skipped };
+                    if start.cost < from.cost {
+                        (from, step) = (start, Step::Start);
+                    }
                 }
+                keep(step);
                 *cell = Cell { cost: from.cost + f64::from(d), length: from.length + 1, ..from };
                 (left, diagonal) = (*cell, above);
             }
@@ -185,11 +233,14 @@ impl Clips {
                 for (j, cell) in row.iter().enumerate().skip(first) {
                     let skipped = (rest + m - 1 - j) as u32;
                     let cost = cell.cost + price * f64::from(skipped);
-                    best = best.better(Cell { cost, skipped: cell.skipped + skipped, ..*cell });
+                    if cost < best.cost {
+                        (best, end) = (Cell { cost, skipped: cell.skipped + skipped, ..*cell }, (i, j));
+                    }
                 }
             }
             std::mem::swap(&mut previous, &mut row);
         }
-        best
+        let cost = best.cost - price * f64::from(best.skipped);
+        Found { cost, length: best.length, skipped: best.skipped, end }
     }
 }

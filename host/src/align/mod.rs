@@ -36,7 +36,7 @@ mod steps;
 mod tiles;
 mod warp;
 
-pub use distance::{AlignedDistance, aligned_distance, aligned_path, aligned_rms};
+pub use distance::{AlignedDistance, aligned, aligned_distance, aligned_path, aligned_rms};
 pub use error::{AlignError, Side};
 pub use iterate::{Energy, Half, Progress, align, align_with};
 pub use search::Work;

@@ -32,8 +32,8 @@ pub enum ReadError {
         error: String,
     },
     /// Neither content nor extension is known.
-    #[error("{}: found {found}, expected a motion clip. Accepted: BVH (.bvh, starts with HIERARCHY) and Kinect recordings \
-             (.csv, header 'Timestamp,HipCenterX,...'); export the clip as BVH", path.display())]
+    #[error("{}: found {found}, expected a motion clip. Accepted: BVH (.bvh, starts with HIERARCHY), Kinect recordings \
+             (.csv, header 'Timestamp,HipCenterX,...') and glTF (.glb, .gltf); export the clip as BVH", path.display())]
     UnknownFormat {
         /// The file.
         path: PathBuf,
@@ -56,6 +56,31 @@ pub enum ReadError {
         /// Where and how.
         fault: KinectFault,
     },
+    /// A glTF file is broken, or holds no skeleton in motion.
+    #[error("{}: {fault}", path.display())]
+    Gltf {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        fault: String,
+    },
+    /// A compressed file is broken.
+    #[error("{}: the gzip file cannot be unpacked: {error}. Unpack it yourself, or load it again", path.display())]
+    Compressed {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        error: String,
+    },
+    /// Something was assumed, and strictness was asked for.
+    #[error("{}: --strict takes no assumption: {note} Say it with an option (--units, --up, --handed, --map, --root, --repair), or \
+             correct the file", path.display())]
+    Assumed {
+        /// The file.
+        path: PathBuf,
+        /// What would have been assumed.
+        note: String,
+    },
     /// The skeleton map that was given does not fit the clip.
     #[error("{}: the skeleton map does not fit: {error}", path.display())]
     Map {
@@ -66,7 +91,7 @@ pub enum ReadError {
     },
     /// The size of the skeleton fits no unit.
     #[error("{}: the unit of length cannot be told: {measured} fits a human size in none of m, cm, mm, inch, cmu \
-             (1 unit = 5.644 cm). Say which it is (`--units cm`, or `units = \"cm\"` in the map file)", path.display())]
+             (1 unit = 5.644 cm), dm, foot. Say which it is (`--units cm`, `--units 0.08` for 8 cm a unit, or `units = \"cm\"` in the map file)", path.display())]
     UnknownUnits {
         /// The file.
         path: PathBuf,

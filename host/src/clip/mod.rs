@@ -5,6 +5,7 @@
 //! | file | holds |
 //! |---|---|
 //! | [`read`], [`read_with`] | any accepted file to a [`Clip`], chosen by content |
+//! | [`formats`] | the table of readers |
 //! | [`bvh`] | the BVH parser and [`Clip::write_bvh`] |
 //! | [`write`](Clip::write) | a clip to a file of the format that its name says: BVH, glTF ([`gltf`]), table of angles ([`angles`]) |
 //! | [`kinect`] | Kinect CSV recordings: positions, resampled and fitted with a skeleton |
@@ -18,11 +19,14 @@ use nalgebra::{UnitQuaternion, Vector3};
 pub mod angles;
 pub mod bvh;
 mod error;
+pub mod formats;
 pub mod gltf;
 pub mod kinect;
 mod kinematics;
 pub mod map;
+mod measure;
 mod mirror;
+mod notes;
 mod read;
 mod resample;
 pub mod solve;
@@ -34,8 +38,9 @@ pub use bvh::write::{WriteError, WriteOptions};
 pub use error::ReadError;
 pub use map::{Canonical, JointMap, SkeletonMap};
 pub use mirror::MirrorError;
+pub use notes::NoteLog;
 pub use read::{ReadOptions, read, read_with};
-pub use resample::ResampleError;
+pub use resample::{Memory, ResampleError};
 pub use summary::Summary;
 pub use units::{Unit, UpAxis};
 pub use write::Format;
@@ -124,6 +129,33 @@ impl Clip {
             frame_time: self.frame_time,
             root: self.root.get(start..end).unwrap_or(&[]).to_vec(),
             rotations: self.rotations.get(start * n..end * n).unwrap_or(&[]).to_vec(),
+            notes: self.notes.clone(),
+        }
+    }
+
+    /// The clip with some of its joints, and with those that carry them. A joint that loses its children keeps the first as its tip.
+    pub fn with_joints(&self, keep: &mut [bool]) -> Clip {
+        for joint in (1..self.skeleton.len()).rev() {
+            if let (true, Some(parent)) = (keep[joint], self.skeleton.joints[joint].parent) {
+                keep[parent] = true;
+            }
+        }
+        let mut index = vec![0; keep.len()];
+        let mut joints: Vec<Joint> = Vec::new();
+        for (at, joint) in self.skeleton.joints.iter().enumerate().filter(|(at, _)| keep[*at]) {
+            index[at] = joints.len();
+            let mut children = self.skeleton.children(at);
+            let leaf = self.skeleton.children(at).all(|c| !keep[c]);
+            let tip = children.next().filter(|_| leaf).map(|c| self.skeleton.joints[c].offset);
+            joints.push(Joint { parent: joint.parent.map(|p| index[p]), end: joint.end.or(tip), ..joint.clone() });
+        }
+        let mut columns = keep.iter().cycle();
+        let kept = |_: &&UnitQuaternion<f64>| columns.next() == Some(&true);
+        Clip {
+            skeleton: Skeleton { joints },
+            frame_time: self.frame_time,
+            root: self.root.clone(),
+            rotations: self.rotations.iter().filter(kept).copied().collect(),
             notes: self.notes.clone(),
         }
     }

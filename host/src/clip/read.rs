@@ -1,20 +1,34 @@
-//! Choosing the reader: by content first, because a wrong extension is common, then by extension.
+//! From a path to a clip: the bytes, the reader, the notes.
 
+use std::io::Read;
 use std::path::Path;
 
 use super::error::ReadError;
+use super::formats::reader_of;
 use super::map::SkeletonMap;
+use super::notes::{NoteLog, is_assumption};
 use super::units::{Unit, UpAxis};
-use super::{Clip, bvh, kinect};
+use super::{Clip, kinect};
+use crate::files;
 
 /// What the caller knows better than the file. The default lets the reader find out, and say so in the notes.
 #[derive(Clone, Debug, Default)]
 pub struct ReadOptions {
-    /// Unit of length of the file (BVH only; the Kinect CSV is in metres). `None`: the map file's, else detected from the
+    /// Unit of length of the file. `None`: the map file's, else detected from the
     /// size of the skeleton, see [`Unit::detect`].
     pub units: Option<Unit>,
-    /// Up axis of the file (BVH only). `None`: the map file's, else Y unless rest pose and motion both say Z.
+    /// Up axis of the file. `None`: the map file's, else found from rest pose, motion and floor, else Y.
     pub up: Option<UpAxis>,
+    /// The file's axes are left-handed: its Z is turned round.
+    pub left_handed: bool,
+    /// Which figure of a file with several, by the name of its root; the first unless given.
+    pub root: Option<String>,
+    /// Bridge frames that were lost or leap.
+    pub repair: bool,
+    /// Refuse what would be assumed.
+    pub strict: bool,
+    /// Where notes are gathered, see [`NoteLog`].
+    pub log: Option<&'static NoteLog>,
     /// Joint names of a skeleton that is not among the known layouts.
     pub map: Option<SkeletonMap>,
     /// Options for recordings without a steady clock.
@@ -32,20 +46,46 @@ pub fn read(path: impl AsRef<Path>) -> Result<Clip, ReadError> {
     read_with(path, &ReadOptions::default())
 }
 
-/// Reads a clip: BVH, or the CSV of a Kinect recording.
+/// Reads a clip of any kind in [`READERS`](super::formats::READERS), also compressed with gzip.
 ///
 /// What was assumed or changed on the way in is in [`Clip::notes`].
 pub fn read_with(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Clip, ReadError> {
     let path = path.as_ref();
-    let bytes = slurp(path)?;
-    match format_of(path, &bytes) {
-        Some(Format::Bvh) => bvh::parse(&bytes, options).map_err(|error| error.at(path)),
-        Some(Format::Kinect) => match kinect::parse(&bytes, &options.kinect) {
-            Ok(recording) => Ok(recording.clip),
-            Err(fault) => Err(ReadError::Kinect { path: path.into(), fault }),
-        },
-        None => Err(ReadError::UnknownFormat { path: path.into(), found: describe(&bytes) }),
+    let (bytes, packed) = unpacked(slurp(path)?, path)?;
+    let Some(reader) = reader_of(path, &bytes) else {
+        return Err(ReadError::UnknownFormat { path: path.into(), found: describe(&bytes) });
+    };
+    let mut clip = (reader.parse)(&bytes, path, options)?;
+    if packed {
+        clip.notes.push("The file was compressed with gzip.".into());
     }
+    if options.strict
+        && let Some(note) = clip.notes.iter().find(|note| is_assumption(note))
+    {
+        return Err(ReadError::Assumed { path: path.into(), note: note.clone() });
+    }
+    if let Some(log) = options.log {
+        log.add(path, &clip.notes);
+    }
+    Ok(clip)
+}
+
+/// Most bytes that a compressed file may hold: a small one can claim a lot.
+const MOST: u64 = 1 << 31;
+
+/// The content of a gzip file, or the bytes as they are.
+fn unpacked(bytes: Vec<u8>, path: &Path) -> Result<(Vec<u8>, bool), ReadError> {
+    if !bytes.starts_with(&[0x1f, 0x8b]) {
+        return Ok((bytes, false));
+    }
+    let mut out = Vec::new();
+    let mut reader = flate2::read::MultiGzDecoder::new(bytes.as_slice()).take(MOST + 1);
+    let refuse = |error: String| ReadError::Compressed { path: path.into(), error };
+    reader.read_to_end(&mut out).map_err(|error| refuse(error.to_string()))?;
+    if out.len() as u64 > MOST {
+        return Err(refuse(format!("it holds more than {MOST} bytes")));
+    }
+    Ok((out, true))
 }
 
 /// The whole file, with errors that tell a missing file from a folder.
@@ -53,37 +93,18 @@ pub(super) fn slurp(path: &Path) -> Result<Vec<u8>, ReadError> {
     if path.is_dir() {
         return Err(ReadError::Directory { path: path.into() });
     }
-    std::fs::read(path).map_err(|source| match source.kind() {
+    files::read(path).map_err(|source| match source.kind() {
         std::io::ErrorKind::NotFound => ReadError::NotFound { path: path.into() },
         _ => ReadError::Io { path: path.into(), error: source.to_string() },
     })
 }
 
-enum Format {
-    Bvh,
-    Kinect,
-}
-
-fn format_of(path: &Path, bytes: &[u8]) -> Option<Format> {
-    let head = &bytes[..bytes.len().min(4096)];
-    let head = String::from_utf8_lossy(head).to_ascii_lowercase();
-    let head = head.trim_start_matches('\u{feff}').trim_start();
-    if head.starts_with("hierarchy") {
-        return Some(Format::Bvh);
-    }
-    if head.starts_with("timestamp") && head.contains("hipcenterx") {
-        return Some(Format::Kinect);
-    }
-    match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
-        "bvh" => Some(Format::Bvh),
-        "csv" => Some(Format::Kinect),
-        _ => None,
-    }
-}
-
 fn describe(bytes: &[u8]) -> String {
     if bytes.is_empty() {
         return "an empty file".into();
+    }
+    if bytes.starts_with(b"Kaydara FBX Binary") || bytes.starts_with(b"; FBX") {
+        return "FBX, which is not read: convert it with Blender (docs/your-clips.md has the line)".into();
     }
     let line = bytes.split(|&b| b == b'\n').next().unwrap_or(&[]);
     match std::str::from_utf8(line) {

@@ -6,33 +6,53 @@ use super::Clip;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ResampleError {
     /// Not a frame rate.
-    #[error("the frame rate is {found}, expected a number from 0.1 to 10000 frames per second")]
+    #[error("the frame rate is {found}, expected a number from 1 to 1000 frames per second")]
     Rate {
         /// What was asked for.
         found: f64,
     },
-    /// More than fits into the memory of a workstation.
+    /// More frames than the clip's length in frames accounts for.
     #[error(
-        "{seconds:.0} s of {joints} joints at {fps} frames per second are {rotations:.1e} rotations, at most {MAX_ROTATIONS:.1e} \
-         are taken: ask for a lower rate, or cut the clip"
+        "at {fps} frames per second its {seconds:.0} s {memory}: cut the clip, or correct the frame time if it is not that long"
     )]
     TooLong {
         /// Length of the clip, s.
         seconds: f64,
-        /// Its joints.
-        joints: usize,
         /// The rate asked for.
         fps: f64,
-        /// Frames times joints.
-        rotations: f64,
+        /// Why not.
+        memory: Memory,
     },
 }
 
-/// Most rotations of a clip: 3 GB, or four hours of 60 joints at 120 frames per second.
-const MAX_ROTATIONS: f64 = 1e8;
+/// Memory that frames would take, and what their source allows, bytes.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "take {:.0} MB of memory, at most {:.0} MB are taken (20 times the {frames} frames that are there, and 200 MB)", needed / 1e6, allowed / 1e6
+)]
+pub struct Memory {
+    needed: f64,
+    allowed: f64,
+    frames: usize,
+}
 
-/// Frame times are written with few digits (0.0333333): a ratio this near to a whole number is meant to be it.
-const RATIO_TOLERANCE: f64 = 1e-3;
+impl Memory {
+    /// Refuses to make `wanted` frames out of `frames` where that takes more than 20 times the memory of these as text, and 200 MB.
+    ///
+    /// Frames that are played are poses of the host's capacity, a clip before and behind, and the text that is written: measured on
+    /// `kinesic apply`.
+    pub fn check(frames: usize, wanted: f64, joints: usize) -> Result<(), Memory> {
+        let joints = joints as f64;
+        let needed = wanted * (3000.0 + 100.0 * joints);
+        // Three angles of nine characters.
+        let allowed = 20.0 * (27.0 * joints * frames as f64) + 2e8;
+        if wanted <= frames as f64 || needed <= allowed { Ok(()) } else { Err(Memory { needed, allowed, frames }) }
+    }
+}
+
+/// Frame times are written with few digits (0.0333333): a ratio this near to a whole number is meant to be it. The 29.97 frames of
+/// television are not 30, a thousandth off.
+const RATIO_TOLERANCE: f64 = 5e-4;
 
 impl Clip {
     /// The clip at another frame rate, over the same time.
@@ -41,14 +61,15 @@ impl Clip {
     /// rotations are interpolated on the great arc (slerp) and the root linearly. Interpolation does not filter: halving the
     /// rate of a noisy clip aliases its noise.
     pub fn resample(&self, fps: f64) -> Result<Clip, ResampleError> {
-        if !(0.1..=10_000.0).contains(&fps) {
+        if !(1.0..=1000.0).contains(&fps) {
             return Err(ResampleError::Rate { found: fps });
         }
-        let joints = self.skeleton.len();
-        let rotations = (1.0 + self.duration() * fps) * joints as f64;
-        if rotations > MAX_ROTATIONS {
-            return Err(ResampleError::TooLong { seconds: self.duration(), joints, fps, rotations });
-        }
+        let wanted = 1.0 + self.duration() * fps;
+        Memory::check(self.frames(), wanted, self.skeleton.len()).map_err(|memory| ResampleError::TooLong {
+            seconds: self.duration(),
+            fps,
+            memory,
+        })?;
         let ratio = self.fps() / fps;
         let whole = ratio.round();
         let drift = (ratio - whole).abs() / whole.max(1.0);
@@ -84,5 +105,33 @@ impl Clip {
     fn shell(&self, frame_time: f64) -> Clip {
         let (skeleton, notes) = (self.skeleton.clone(), self.notes.clone());
         Clip { skeleton, frame_time, root: Vec::new(), rotations: Vec::new(), notes }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gait::{Manner, walk};
+
+    #[test]
+    fn a_frame_time_of_ten_seconds_is_refused_with_both_numbers() {
+        let clip = |frames: usize, frame_time: f64| {
+            let walk = walk(&Manner::NEUTRAL, 1.0, 60.0, 0.0, 1);
+            let at = |frame: usize| frame % walk.frames();
+            Clip {
+                root: (0..frames).map(|frame| walk.root[at(frame)]).collect(),
+                rotations: (0..frames).flat_map(|frame| walk.pose(at(frame)).to_vec()).collect(),
+                ..walk.shell(frame_time)
+            }
+        };
+        let error = clip(800, 10.0).resample(60.0).unwrap_err().to_string();
+        assert!(error.contains("7990 s") && error.contains("take 2"), "{error}");
+        assert!(error.contains("at most 208 MB") && error.contains("800 frames"), "{error}");
+        // A few of them are a slow film.
+        assert_eq!(clip(20, 10.0).resample(60.0).unwrap().frames(), 11_401);
+        // As long as one likes, at a usual rate: what is played is in proportion to what is read.
+        let long = clip(30_000, 1.0 / 30.0);
+        assert_eq!(long.resample(60.0).unwrap().frames(), 59_999);
+        assert_eq!(long.resample(24.0).unwrap().frames(), 24_000);
     }
 }

@@ -60,7 +60,7 @@ fn bones(skeleton: &Skeleton) -> Vec<Vec<(usize, Vector3<f64>)>> {
 }
 
 /// The rotation that turns each first vector best towards its second.
-pub(super) fn turn(pairs: &[(Vector3<f64>, Vector3<f64>)]) -> UnitQuaternion<f64> {
+pub(crate) fn turn(pairs: &[(Vector3<f64>, Vector3<f64>)]) -> UnitQuaternion<f64> {
     match pairs {
         [] => UnitQuaternion::identity(),
         [(from, to)] => swing(from, to),

@@ -3,11 +3,13 @@
 use std::fmt;
 use std::str::FromStr;
 
+use nalgebra::{UnitQuaternion, Vector3};
+
 use super::Skeleton;
 use super::map::{Canonical, JointMap};
 
 /// A unit of length that BVH files are found in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Unit {
     /// 1 m.
     Metre,
@@ -19,11 +21,28 @@ pub enum Unit {
     Inch,
     /// 5.644 cm (one inch over 0.45): the CMU database and everything converted from its ASF/AMC files.
     Cmu,
+    /// 0.1 m: MakeHuman.
+    Decimetre,
+    /// 0.3048 m.
+    Foot,
+    /// 0.08 m: MikuMikuDance.
+    Mmd,
+    /// Any other: so many metres.
+    Factor(f64),
 }
 
 impl Unit {
-    /// All units, in the order in which messages list them.
-    pub const ALL: [Unit; 5] = [Unit::Metre, Unit::Centimetre, Unit::Millimetre, Unit::Inch, Unit::Cmu];
+    /// All units that have a name, in the order in which messages list them.
+    pub const ALL: [Unit; 8] = [
+        Unit::Metre,
+        Unit::Centimetre,
+        Unit::Millimetre,
+        Unit::Inch,
+        Unit::Cmu,
+        Unit::Decimetre,
+        Unit::Foot,
+        Unit::Mmd,
+    ];
 
     /// Metres per unit.
     pub fn metres(self) -> f64 {
@@ -33,6 +52,10 @@ impl Unit {
             Unit::Millimetre => 0.001,
             Unit::Inch => 0.0254,
             Unit::Cmu => 0.0254 / 0.45,
+            Unit::Decimetre => 0.1,
+            Unit::Foot => 0.3048,
+            Unit::Mmd => 0.08,
+            Unit::Factor(metres) => metres,
         }
     }
 
@@ -44,35 +67,57 @@ impl Unit {
             Unit::Millimetre => "mm",
             Unit::Inch => "inch",
             Unit::Cmu => "cmu",
+            Unit::Decimetre => "dm",
+            Unit::Foot => "foot",
+            Unit::Mmd => "mmd",
+            Unit::Factor(_) => "factor",
         }
     }
 
     /// The unit in which a leg of `leg` units (hip to knee to ankle) belongs to a person.
     ///
-    /// The ranges do not overlap; where two units would both give a human, the commoner file wins:
+    /// The ranges do not overlap; where two units would both give a human, the commoner file wins, see [`Unit::others`]:
     ///
     /// | leg, units | unit | leg, m |
     /// |---|---|---|
     /// | 0.3 to 1.3 | m | 0.30 to 1.30 |
-    /// | 6 to 20 | cmu | 0.34 to 1.13 |
+    /// | 1.6 to 4.3 | foot | 0.49 to 1.31 |
+    /// | 6 to 9.5 | dm | 0.60 to 0.95 |
+    /// | 9.5 to 20 | cmu | 0.54 to 1.13 |
     /// | 20 to 38 | inch | 0.51 to 0.97 |
     /// | 38 to 130 | cm | 0.38 to 1.30 |
     /// | 380 to 1300 | mm | 0.38 to 1.30 |
     pub fn detect(leg: f64) -> Option<Unit> {
         match leg {
             l if (0.3..=1.3).contains(&l) => Some(Unit::Metre),
-            l if (6.0..20.0).contains(&l) => Some(Unit::Cmu),
+            l if (1.6..=4.3).contains(&l) => Some(Unit::Foot),
+            l if (6.0..9.5).contains(&l) => Some(Unit::Decimetre),
+            l if (9.5..20.0).contains(&l) => Some(Unit::Cmu),
             l if (20.0..38.0).contains(&l) => Some(Unit::Inch),
             l if (38.0..=130.0).contains(&l) => Some(Unit::Centimetre),
             l if (380.0..=1300.0).contains(&l) => Some(Unit::Millimetre),
             _ => None,
         }
     }
+
+    /// Units in which the leg would belong to a person too, where the size alone does not decide. Adults in inches, toddlers in
+    /// cm: 25 to 50 units. Adults in decimetres, figures of MikuMikuDance, children of the CMU database: 6 to 10 units.
+    pub fn others(self, leg: f64) -> Vec<Unit> {
+        let rivals: &[Unit] = match leg {
+            l if (6.0..10.5).contains(&l) => &[Unit::Decimetre, Unit::Mmd, Unit::Cmu],
+            l if (25.0..51.0).contains(&l) => &[Unit::Inch, Unit::Centimetre],
+            _ => &[],
+        };
+        rivals.iter().copied().filter(|unit| *unit != self).collect()
+    }
 }
 
 impl fmt::Display for Unit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
+        match self {
+            Unit::Factor(metres) => write!(f, "{metres} m"),
+            named => f.write_str(named.name()),
+        }
     }
 }
 
@@ -86,29 +131,91 @@ impl FromStr for Unit {
             "mm" => Ok(Unit::Millimetre),
             "in" | "inch" | "inches" => Ok(Unit::Inch),
             "cmu" => Ok(Unit::Cmu),
-            _ => Err(format!("'{text}' is not a unit of length; use one of m, cm, mm, inch, cmu")),
+            "dm" => Ok(Unit::Decimetre),
+            "ft" | "foot" | "feet" => Ok(Unit::Foot),
+            "mmd" => Ok(Unit::Mmd),
+            other => match other.parse::<f64>() {
+                Ok(metres) if (1e-6..=1e6).contains(&metres) => Ok(Unit::Factor(metres)),
+                _ => Err(format!(
+                    "'{text}' is not a unit of length; use one of m, cm, mm, inch, cmu, dm, foot, mmd, or the metres that one \
+                     unit has, like 0.08"
+                )),
+            },
         }
     }
 }
 
 /// Which axis points up in a file. Clips in memory are always Y up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)] // The axis, and whether it is its other end.
 pub enum UpAxis {
-    /// Y up: what BVH files have by custom.
+    X,
+    /// What BVH files have by custom.
     Y,
-    /// Z up: exports from tools that work so. Turned to Y up on import: (x, y, z) becomes (x, z, -y).
+    /// Exports from tools that work so. Turned to Y up on import: (x, y, z) becomes (x, z, -y).
     Z,
+    NegX,
+    NegY,
+    NegZ,
+}
+
+impl UpAxis {
+    /// All of them.
+    pub const ALL: [UpAxis; 6] = [UpAxis::X, UpAxis::Y, UpAxis::Z, UpAxis::NegX, UpAxis::NegY, UpAxis::NegZ];
+
+    /// The direction in the file.
+    pub fn direction(self) -> Vector3<f64> {
+        match self {
+            UpAxis::X => Vector3::x(),
+            UpAxis::Y => Vector3::y(),
+            UpAxis::Z => Vector3::z(),
+            UpAxis::NegX => -Vector3::x(),
+            UpAxis::NegY => -Vector3::y(),
+            UpAxis::NegZ => -Vector3::z(),
+        }
+    }
+
+    /// The rotation that brings it to +Y: a quarter or half turn about X, for the X axis about Z.
+    pub fn to_y(self) -> UnitQuaternion<f64> {
+        let (axis, quarters) = match self {
+            UpAxis::X => (Vector3::z_axis(), 1.0),
+            UpAxis::Y => (Vector3::x_axis(), 0.0),
+            UpAxis::Z => (Vector3::x_axis(), -1.0),
+            UpAxis::NegX => (Vector3::z_axis(), -1.0),
+            UpAxis::NegY => (Vector3::x_axis(), 2.0),
+            UpAxis::NegZ => (Vector3::x_axis(), 1.0),
+        };
+        UnitQuaternion::from_axis_angle(&axis, quarters * std::f64::consts::FRAC_PI_2)
+    }
+
+    /// As [`UpAxis::to_y`] for a vector, without rounding.
+    pub fn turn(self, v: Vector3<f64>) -> Vector3<f64> {
+        match self {
+            UpAxis::X => Vector3::new(-v.y, v.x, v.z),
+            UpAxis::Y => v,
+            UpAxis::Z => Vector3::new(v.x, v.z, -v.y),
+            UpAxis::NegX => Vector3::new(v.y, -v.x, v.z),
+            UpAxis::NegY => Vector3::new(v.x, -v.y, -v.z),
+            UpAxis::NegZ => Vector3::new(v.x, -v.z, v.y),
+        }
+    }
+}
+
+const AXES: [&str; 6] = ["x", "y", "z", "-x", "-y", "-z"];
+
+impl fmt::Display for UpAxis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(AXES[*self as usize])
+    }
 }
 
 impl FromStr for UpAxis {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        match text.trim().to_ascii_lowercase().as_str() {
-            "y" => Ok(UpAxis::Y),
-            "z" => Ok(UpAxis::Z),
-            _ => Err(format!("'{text}' is not an up axis; use y or z")),
-        }
+        let lower = text.trim().to_ascii_lowercase();
+        let at = AXES.iter().position(|axis| *axis == lower.trim_start_matches('+'));
+        at.map(|at| Self::ALL[at]).ok_or_else(|| format!("'{text}' is not an up axis; use x, y, z, -x, -y or -z"))
     }
 }
 

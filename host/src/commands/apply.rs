@@ -3,15 +3,15 @@
 use std::path::PathBuf;
 
 use clap::ValueEnum;
+use kinesic::engine::Controls;
 use kinesic::model::ModelMeta;
-use kinesic::pose::Controls;
 use kinesic::{Pack, Pose};
-use kinesic_host::clip::Clip;
+use kinesic_host::clip::{Clip, Memory};
 use kinesic_host::components;
 use kinesic_host::pack::PackFile;
 use kinesic_host::prepare::Source;
 use kinesic_host::quality::{self, Quality};
-use kinesic_host::rig::{MAX_JOINTS, Rig};
+use kinesic_host::rig::{MAX_JOINTS, MAX_ROWS, Rig};
 use kinesic_host::translate::{self, TIMING_STRENGTH, Timing};
 use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
@@ -100,7 +100,9 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let pack = file.pack().into_diagnostic()?;
     let rig = Rig::from_pack(&pack).into_diagnostic()?;
     let mut controls = Controls { strength: args.strength, ..Controls::default() };
-    mask::apply(&args.mask, &rig, 1.0, &mut controls.mask)?;
+    let mut weights = [1.0; MAX_JOINTS];
+    mask::apply(&args.mask, &rig, 1.0, &mut weights)?;
+    controls.mask = rig.coordinate_weights(&weights);
     let bar = spinner();
     bar.set_message("playing");
     let fps = f64::from(pack.metadata().frame_rate);
@@ -144,13 +146,28 @@ struct Played {
     plausible: [f32; 2],
 }
 
+/// Refuses a clip that the pack's clock may make too long. Each frame lasts `2^log2` frames, between the ends of the clock's range, to
+/// the power of the strength.
+fn check_length(args: &Args, pack: &Pack, clip: &Clip) -> miette::Result<()> {
+    let timing = pack.slice::<[f32; 3]>("translate/timing", 1).into_diagnostic()?;
+    let farthest = timing.iter().flat_map(|[_, low, high]| [low, high]).map(|end| end.abs()).fold(0.0, f32::max);
+    let wanted = clip.frames() as f64 * f64::from(farthest * args.strength.abs()).exp2();
+    Memory::check(clip.frames(), wanted, clip.skeleton.len()).map_err(|memory| {
+        miette!(
+            help = "cut the clip, ask for less strength, or keep the clip's timing: --timing keep",
+            "--timing learned: {}: the {wanted:.0} frames that its clock may make of this clip {memory}",
+            args.pack.display()
+        )
+    })
+}
+
 /// Plays with the engine that the pack holds.
 fn play(
     args: &Args,
     pack: &Pack,
     rig: &Rig,
     clip: Option<&Clip>,
-    controls: Controls<MAX_JOINTS>,
+    controls: Controls<MAX_ROWS>,
 ) -> miette::Result<Played> {
     let models: Vec<ModelMeta> = pack.metadata().models.iter().collect();
     if let (Some(meta), Some(clip)) = (models.iter().find_map(|m| m.translator()), clip) {
@@ -158,7 +175,10 @@ fn play(
             Clock::Keep => Timing::Keep,
             Clock::Learned => Timing::Learned,
         };
-        let poses = translate::play(pack, &rig.poses(clip), &translate::Settings { controls, timing });
+        if let Timing::Learned = timing {
+            check_length(args, pack, clip)?;
+        }
+        let poses = translate::play(pack, rig, &rig.poses(clip), &translate::Settings { controls, timing });
         return Ok(Played { poses: poses.into_diagnostic()?, plausible: meta.strength });
     }
     if let Some(meta) = models.iter().find_map(|m| m.components()) {
@@ -167,8 +187,8 @@ fn play(
         }
         let settings = components::Settings { controls };
         let poses = match clip {
-            Some(clip) => components::play(pack, &rig.poses(clip), &settings),
-            None => components::play_stored(pack, &settings),
+            Some(clip) => components::play(pack, rig, &rig.poses(clip), &settings),
+            None => components::play_stored(pack, rig, &settings),
         };
         let poses = poses.into_diagnostic()?;
         if poses.is_empty() {

@@ -1,9 +1,12 @@
 //! Arguments that name clips and pairs of clips.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use kinesic_host::clip::{ReadOptions, SkeletonMap, Unit, UpAxis};
+use kinesic_host::clip::formats::READERS;
+use kinesic_host::clip::{NoteLog, ReadOptions, SkeletonMap, Unit, UpAxis};
+use kinesic_host::files;
 use kinesic_host::prepare::fingerprint;
 use miette::{IntoDiagnostic, miette};
 
@@ -13,19 +16,55 @@ pub struct Reading {
     /// Skeleton map (TOML) that says which joint is which, for skeletons with unknown joint names
     #[arg(long, value_name = "FILE")]
     pub map: Option<PathBuf>,
-    /// Unit of length of the BVH files: m, cm, mm, inch, cmu (default: found from the size of the skeleton)
+    /// Unit of length of the files: m, cm, mm, inch, cmu, dm, foot, mmd, or metres a unit like 0.08 (default: found from the size of the
+    /// skeleton)
     #[arg(long, value_name = "UNIT")]
     pub units: Option<Unit>,
-    /// Up axis of the BVH files: y or z (default: found from rest pose and motion)
-    #[arg(long, value_name = "AXIS")]
+    /// Up axis of the files: x, y, z, -x, -y or -z (default: found from rest pose and motion)
+    #[arg(long, value_name = "AXIS", allow_hyphen_values = true)]
     pub up: Option<UpAxis>,
+    /// Which hand the files' axes are of
+    #[arg(long, value_enum, default_value_t = Hand::Right)]
+    pub handed: Hand,
+    /// Which figure of a file with several: the name of its ROOT (default: the first)
+    #[arg(long, value_name = "NAME")]
+    pub root: Option<String>,
+    /// Bridge lost frames and single frames that leap
+    #[arg(long)]
+    pub repair: bool,
+    /// Refuse a file about which something would be assumed
+    #[arg(long)]
+    pub strict: bool,
 }
+
+/// Handedness of axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum Hand {
+    /// X right, Y up, Z towards the viewer
+    #[default]
+    Right,
+    /// X right, Y up, Z away: Unity, DirectX
+    Left,
+}
+
+/// What was assumed about the clips of this command.
+pub static NOTES: NoteLog = NoteLog::new();
 
 impl Reading {
     /// Options for the reader.
     pub fn options(&self) -> miette::Result<ReadOptions> {
         let map = self.map.as_ref().map(SkeletonMap::read).transpose().into_diagnostic()?;
-        Ok(ReadOptions { units: self.units, up: self.up, map, ..ReadOptions::default() })
+        Ok(ReadOptions {
+            units: self.units,
+            up: self.up,
+            left_handed: self.handed == Hand::Left,
+            root: self.root.clone(),
+            repair: self.repair,
+            strict: self.strict,
+            log: Some(&NOTES),
+            map,
+            ..ReadOptions::default()
+        })
     }
 }
 
@@ -33,7 +72,8 @@ impl Reading {
     /// Everything here that decides what a clip becomes.
     pub fn deciding(&self) -> miette::Result<String> {
         let map = self.map.as_ref().map(|path| fingerprint(path)).transpose().into_diagnostic()?;
-        Ok(format!("{map:?} {:?} {:?}", self.units, self.up))
+        let hand = self.handed == Hand::Left;
+        Ok(format!("{map:?} {:?} {:?} {hand} {:?} {}", self.units, self.up, self.root, self.repair))
     }
 }
 
@@ -69,7 +109,8 @@ impl Pairs {
 
     fn rows_of(&self, table: &Path) -> miette::Result<Vec<(PathBuf, PathBuf)>> {
         let refuse = |error: csv::Error| miette!("{}: cannot be read: {error}", table.display());
-        let mut reader = csv::ReaderBuilder::new().delimiter(b'\t').quoting(false).from_path(table).map_err(refuse)?;
+        let bytes = files::read(table).map_err(|error| refuse(error.into()))?;
+        let mut reader = csv::ReaderBuilder::new().delimiter(b'\t').quoting(false).from_reader(&bytes[..]);
         let headers = reader.headers().map_err(refuse)?.clone();
         let column = |name: &str| {
             headers.iter().position(|header| header == name).ok_or_else(|| {
@@ -111,6 +152,7 @@ impl Pairs {
 /// `manifest.tsv:label=body-mechanics,skeleton=cmu31` (the rows that fulfil all conditions).
 pub fn clip_paths(sets: &[PathBuf]) -> miette::Result<Vec<PathBuf>> {
     let mut paths: Vec<PathBuf> = Vec::new();
+    let mut known: HashSet<PathBuf> = HashSet::new();
     for set in sets {
         let text = set.display().to_string();
         let found = if set.is_dir() {
@@ -121,7 +163,7 @@ pub fn clip_paths(sets: &[PathBuf]) -> miette::Result<Vec<PathBuf>> {
             vec![set.clone()]
         };
         for path in found {
-            if !paths.contains(&path) {
+            if known.insert(path.clone()) {
                 paths.push(path);
             }
         }
@@ -134,7 +176,8 @@ fn folder_clips(folder: &Path) -> miette::Result<Vec<PathBuf>> {
     let mut paths = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(refuse)? {
         let path = entry.map_err(refuse)?.path();
-        let is_clip = |e: &std::ffi::OsStr| e.eq_ignore_ascii_case("bvh") || e.eq_ignore_ascii_case("csv");
+        let known = || READERS.iter().flat_map(|reader| reader.extensions);
+        let is_clip = |e: &std::ffi::OsStr| known().any(|extension| e.eq_ignore_ascii_case(extension));
         if path.extension().is_some_and(is_clip) {
             paths.push(path);
         }
@@ -148,7 +191,8 @@ fn folder_clips(folder: &Path) -> miette::Result<Vec<PathBuf>> {
 
 fn table_clips(table: &Path, conditions: &str) -> miette::Result<Vec<PathBuf>> {
     let refuse = |error: csv::Error| miette!("{}: cannot be read: {error}", table.display());
-    let mut reader = csv::ReaderBuilder::new().delimiter(b'\t').quoting(false).from_path(table).map_err(refuse)?;
+    let bytes = files::read(table).map_err(|error| refuse(error.into()))?;
+    let mut reader = csv::ReaderBuilder::new().delimiter(b'\t').quoting(false).from_reader(&bytes[..]);
     let headers = reader.headers().map_err(refuse)?.clone();
     let column = |name: &str| {
         headers.iter().position(|header| header == name).ok_or_else(|| {

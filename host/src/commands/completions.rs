@@ -3,7 +3,7 @@
 use clap::CommandFactory;
 use clap_complete::Shell;
 
-use super::Cli;
+use super::{Cli, say};
 
 /// Print a script that completes this command's words in a shell
 #[derive(Debug, clap::Args)]
@@ -20,6 +20,8 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(args: &Args) -> miette::Result<()> {
-    clap_complete::generate(args.shell, &mut Cli::command(), "kinesic", &mut std::io::stdout());
+    let mut script = Vec::new();
+    clap_complete::generate(args.shell, &mut Cli::command(), "kinesic", &mut script);
+    say::raw(&String::from_utf8_lossy(&script));
     Ok(())
 }

@@ -3,21 +3,25 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use kinesic::{Pose, TranslatorState};
+use kinesic::{Pipeline, PipelineState, Pose};
+use kinesic_host::align::Ends;
 use kinesic_host::clip::{Canonical, Clip, JointMap};
 use kinesic_host::gait::{Manner, walk};
+use kinesic_host::measure::turns::Turns;
+use kinesic_host::measure::{Degrees, Measurable, compare};
 use kinesic_host::mechanics::decouple;
 use kinesic_host::models;
 use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_host::retarget::retarget;
-use kinesic_host::rig::{MAX_JOINTS, Rig};
+use kinesic_host::rig::{MAX_JOINTS, MAX_ROWS, Rig};
 use kinesic_host::translate::{
     FormChoice, HostTranslator, NamedPair, TrainOptions, TrainPair, evaluate, plausible, train,
 };
 use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
 
-use super::output::{command_line, print_json, spinner, write_whole};
+use super::origin::command_line;
+use super::output::{print_json, spinner, write_whole};
 
 /// Show the whole way: make two manners of walking, learn the difference, pack it, play an unseen walk frame by frame
 ///
@@ -57,6 +61,12 @@ struct Summary {
     offset_cm: f64,
     affine_cm: f64,
     floor_cm: f64,
+    /// The same in degrees, over all joints and over leaves.
+    error_degrees: [f64; 2],
+    identity_degrees: [f64; 2],
+    offset_degrees: [f64; 2],
+    affine_degrees: [f64; 2],
+    floor_degrees: [f64; 2],
     pack_bytes: usize,
     multiply_adds_per_frame: usize,
     microseconds_per_frame: f64,
@@ -82,6 +92,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
         (made(&Manner::NEUTRAL, 0.3, 3), made(&Manner::WEARY, 0.3, 4), made(&Manner::WEARY, 0.3, 5));
     let map = JointMap::detect(&neutral.skeleton).ok_or_else(|| miette!("the made skeleton is not known"))?;
     let rig = Rig::new(&neutral.skeleton, &map).into_diagnostic()?;
+    let rig = rig.centred(&[&rig.poses(&neutral), &rig.poses(&weary)]);
     let locals = |clip: &Clip| rig.locals(&rig.poses(clip));
     let pair = TrainPair {
         source_name: "neutral.bvh".into(),
@@ -91,12 +102,14 @@ pub fn run(args: &Args) -> miette::Result<()> {
     };
     let options = TrainOptions { form: FormChoice::WholeBody, ..TrainOptions::default() };
     let mut trained = train(&rig, &[pair], "weary", FPS, &options, &|_| {}).into_diagnostic()?;
+    let turns = Turns::of_pairs(&rig, [(&neutral, &weary)]).into_diagnostic()?;
     let provenance = Provenance {
         tool: format!("kinesic {}", env!("CARGO_PKG_VERSION")),
         command: command_line(),
         seed: args.seed,
         notes: vec!["trained on made-up walks (kinesic demo)".to_owned()],
         baselines: trained.baselines.clone(),
+        turns: turns.numbers(),
         ..Provenance::default()
     };
     let preview = PackFile::from_bytes(&trained.model.pack(&rig, &provenance));
@@ -113,15 +126,20 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let pack = file.pack().into_diagnostic()?;
     let translator = HostTranslator::load(&pack).into_diagnostic()?;
     let source = rig.poses(&unseen);
-    let (styled, microseconds) = play_timed(&translator, &source);
+    let (styled, microseconds) = play_timed(&translator, &rig, &source)?;
     let report = evaluate(
         &pack,
         &rig,
         &trained.baselines,
+        Some(&turns),
         &[NamedPair { source: ("unseen", &unseen), target: ("expected", &expected) }],
     )
     .into_diagnostic()?;
-    let floor = floor(&rig, &again, &expected)?;
+    // Two takes of the same manner: no translation can be expected to come nearer.
+    let take = |clip| Measurable::new(&rig, clip);
+    let floor = compare(&rig, &take(&again), &take(&expected), Ends::Closed).into_diagnostic()?;
+    let angles = |degrees: &Degrees| [degrees.all, degrees.leaves];
+    let simpler = |degrees: &Option<Degrees>| degrees.as_ref().map_or([f64::NAN; 2], angles);
     let clips: [(&str, &Clip); 4] =
         [("neutral.bvh", &neutral), ("weary.bvh", &weary), ("unseen.bvh", &unseen), ("expected.bvh", &expected)];
     for (name, clip) in clips {
@@ -139,7 +157,12 @@ pub fn run(args: &Args) -> miette::Result<()> {
         identity_cm: report.errors.identity_cm,
         offset_cm: report.errors.offset_cm,
         affine_cm: report.errors.affine_cm,
-        floor_cm: floor,
+        floor_cm: floor.cm,
+        error_degrees: angles(&report.errors.degrees.error),
+        identity_degrees: angles(&report.errors.degrees.identity),
+        offset_degrees: simpler(&report.errors.degrees.offset),
+        affine_degrees: simpler(&report.errors.degrees.affine),
+        floor_degrees: angles(&floor.degrees),
         pack_bytes: bytes.len(),
         multiply_adds_per_frame: translator.multiply_adds(),
         microseconds_per_frame: microseconds,
@@ -155,29 +178,26 @@ pub fn run(args: &Args) -> miette::Result<()> {
 }
 
 /// Plays frame by frame; time of a frame is the median of five passes.
-fn play_timed(translator: &HostTranslator, source: &[Pose<MAX_JOINTS>]) -> (Vec<Pose<MAX_JOINTS>>, f64) {
+fn play_timed(
+    translator: &HostTranslator,
+    rig: &Rig,
+    source: &[Pose<MAX_JOINTS>],
+) -> miette::Result<(Vec<Pose<MAX_JOINTS>>, f64)> {
     let mut styled = vec![Pose::identity(); source.len()];
+    let pipeline = Pipeline::<_, MAX_ROWS>::new(rig.frames(), *translator).into_diagnostic()?;
     let mut passes: Vec<f64> = (0..5)
         .map(|_| {
-            let mut state = Box::new(TranslatorState::new());
-            translator.start(&mut state, &source[0]);
+            let mut state = Box::new(PipelineState::new());
+            pipeline.start(&mut state, &source[0]);
             let begin = Instant::now();
             for (pose, out) in source.iter().zip(&mut styled) {
-                translator.step(&mut state, pose, out);
+                pipeline.step(&mut state, Some(pose), out);
             }
             begin.elapsed().as_secs_f64() * 1e6 / source.len() as f64
         })
         .collect();
     passes.sort_by(f64::total_cmp);
-    (styled, passes[2])
-}
-
-/// Two takes of the same manner: no translation can be expected to come nearer.
-fn floor(rig: &Rig, a: &Clip, b: &Clip) -> miette::Result<f64> {
-    use kinesic_host::align::{Series, aligned_rms};
-    let (a, b) = (rig.locals(&rig.poses(a)), rig.locals(&rig.poses(b)));
-    let series = |l| Series::new(l, 3 * rig.joints()).into_diagnostic();
-    Ok(100.0 * aligned_rms(series(&a.positions)?, series(&b.positions)?).into_diagnostic()?)
+    Ok((styled, passes[2]))
 }
 
 /// A clip with the map of its joints.
@@ -212,16 +232,19 @@ fn nod((clip, map): &Mapped) -> miette::Result<f64> {
 
 fn print(s: &Summary, folder: &Path) {
     println!("A walk that was not in the training, translated to a weary one.");
-    println!("Aligned RMS joint distance to the weary walk that belongs to it, cm:");
-    println!("  doing nothing            {:6.2}", s.identity_cm);
-    println!("  mean offset              {:6.2}", s.offset_cm);
-    println!("  affine map a joint       {:6.2}", s.affine_cm);
-    println!("  kinesic                  {:6.2}", s.error_cm);
-    println!("  another take (floor)     {:6.2}", s.floor_cm);
-    println!("Pack                       {:6} bytes", s.pack_bytes);
-    println!("Multiply-adds a frame      {:6} and kinematics", s.multiply_adds_per_frame);
     println!(
-        "Time a frame on this host  {:6.1} us ({} frames, median of 5 passes)",
+        "Aligned RMS joint distance to the weary walk that belongs to it, cm; mean angle, degrees: all joints, leaves"
+    );
+    let row = |name: &str, cm: f64, [all, leaves]: [f64; 2]| println!("  {name:<24} {cm:6.2} {all:8.2} {leaves:8.2}");
+    row("doing nothing", s.identity_cm, s.identity_degrees);
+    row("mean offset", s.offset_cm, s.offset_degrees);
+    row("affine map per joint", s.affine_cm, s.affine_degrees);
+    row("kinesic", s.error_cm, s.error_degrees);
+    row("another take (floor)", s.floor_cm, s.floor_degrees);
+    println!("Pack                       {:6} bytes", s.pack_bytes);
+    println!("Multiply-adds per frame    {:6} and the rig's", s.multiply_adds_per_frame);
+    println!(
+        "Time per frame, this host  {:6.1} us ({} frames, median of 5 passes)",
         s.microseconds_per_frame, s.frames
     );
     println!();

@@ -14,7 +14,8 @@ use super::output::{check_motion, check_output, print_json, write_whole};
 
 /// Write a clip in another format, or a pack as Rust source
 ///
-/// A clip keeps its skeleton, its frame rate and its motion. BVH is in centimetres; glTF 2.0 in metres, +Y up, one key a frame, the
+/// A clip keeps its frame rate and its motion, and its skeleton but for what reading leaves out: scene roots above the hips are composed
+/// into them, joints beside them are dropped, with a note. BVH is in centimetres; glTF 2.0 in metres, +Y up, one key a frame, the
 /// root's path as the translation of the first node; CSV is a table of joint angles in degrees.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\

@@ -3,14 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use kinesic::Pack;
-use kinesic::model::{JointMeta, MAGIC, ModelMeta};
+use kinesic::model::{JointMeta, MAGIC, ModelMeta, VERSION};
 use kinesic_host::clip::{self, JointMap};
 use kinesic_host::components::HostComponents;
 use kinesic_host::emotion::HostEmotion;
 use kinesic_host::face::HostFace;
-use kinesic_host::limit::HostLimiter;
+use kinesic_host::files;
+use kinesic_host::limit::{HostLimiter, LimitsModel};
 use kinesic_host::mechanics::HostMechanics;
 use kinesic_host::pack::{PackFile, Provenance};
+use kinesic_host::plain::line;
 use kinesic_host::rig::Rig;
 use kinesic_host::translate::HostTranslator;
 use miette::IntoDiagnostic;
@@ -55,7 +57,8 @@ pub fn run(args: &Args) -> miette::Result<()> {
 pub fn is_pack(path: &Path) -> bool {
     let starts = || {
         let mut head = [0; 4];
-        let read = std::fs::File::open(path).and_then(|mut file| std::io::Read::read_exact(&mut file, &mut head));
+        let open = || files::check_regular(path).and_then(|()| std::fs::File::open(path));
+        let read = open().and_then(|mut file| std::io::Read::read_exact(&mut file, &mut head));
         read.is_ok() && head == MAGIC
     };
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("kin")) || starts()
@@ -71,12 +74,10 @@ struct ClipReport {
 }
 
 fn clip(args: &Args) -> miette::Result<()> {
-    let options = args.reading.options()?;
+    // The notes are printed below.
+    let options = clip::ReadOptions { log: None, ..args.reading.options()? };
     let clip = clip::read_with(&args.file, &options).into_diagnostic()?;
-    let map = match &options.map {
-        Some(map) => Some(map.resolve(&clip.skeleton).into_diagnostic()?),
-        None => JointMap::detect(&clip.skeleton),
-    };
+    let map = JointMap::choose(&clip.skeleton, options.map.as_ref()).into_diagnostic()?;
     let name = |joint: usize| clip.skeleton.joints[joint].name.clone();
     let known = |map: &JointMap| {
         let joint = |c: clip::Canonical| Some((c.name(), name(map.joint(c)?)));
@@ -96,9 +97,9 @@ fn clip(args: &Args) -> miette::Result<()> {
     let layout = map.as_ref().map_or("unknown names: give a skeleton map with --map (see --help)", JointMap::layout);
     println!("skeleton   {} joints, {layout}, about {:.2} m from pelvis chain and legs", s.joints, s.height_m);
     println!("height     joints between {:.2} m and {:.2} m", s.vertical_m[0], s.vertical_m[1]);
-    println!("joints     {}", report.joint_names.join(", "));
+    println!("joints     {}", line(&report.joint_names.join(", ")));
     for note in &s.notes {
-        println!("note: {note}");
+        println!("note: {}", line(note));
     }
     Ok(())
 }
@@ -127,7 +128,7 @@ pub struct ModelReport {
     pub figures: serde_json::Map<String, serde_json::Value>,
 }
 
-fn model(pack: &Pack, meta: &ModelMeta, joints: usize) -> miette::Result<ModelReport> {
+fn model(pack: &Pack, meta: &ModelMeta, rows: usize) -> miette::Result<ModelReport> {
     let (engine, figures) = match meta {
         ModelMeta::Translator(meta) => {
             let translator = HostTranslator::load(pack).into_diagnostic()?;
@@ -138,9 +139,9 @@ fn model(pack: &Pack, meta: &ModelMeta, joints: usize) -> miette::Result<ModelRe
                 "numbers": format!("{:?}", translator.number()).to_lowercase(),
                 "filter_states": 2 * meta.blocks,
                 "drives": meta.drives,
-                "multiply_adds_per_frame_before_kinematics": translator.multiply_adds(),
-                "capacity": format!("Translator::<{joints}, {states}>"),
-                "state_bytes": translator_state_bytes(joints, states),
+                "multiply_adds_per_frame": translator.multiply_adds(),
+                "capacity": format!("Translator::<{rows}, {states}>"),
+                "state_bytes": translator_state_bytes(rows, states),
                 "plausible_strength": meta.strength,
             });
             ("translator", figures)
@@ -163,7 +164,8 @@ fn model(pack: &Pack, meta: &ModelMeta, joints: usize) -> miette::Result<ModelRe
                 "style": meta.style,
                 "components": meta.count,
                 "stored_frames": meta.frames,
-                "multiply_adds_per_frame_before_kinematics": components.multiply_adds(),
+                "multiply_adds_per_frame": components.multiply_adds(),
+                "capacity": format!("Components::<{rows}, {}>", meta.count),
                 "plausible_strength": meta.strength,
             });
             ("components", figures)
@@ -180,7 +182,7 @@ fn model(pack: &Pack, meta: &ModelMeta, joints: usize) -> miette::Result<ModelRe
                 "components": meta.components,
                 "hidden": meta.hidden,
                 "multiply_adds_per_change_of_strength": emotion.multiply_adds(),
-                "capacity": format!("Emotion::<{joints}, {}, {width}>", meta.keyframes),
+                "capacity": format!("Emotion::<{rows}, {}, {width}>", meta.keyframes),
                 "plausible_strengths": strengths,
             });
             ("emotion", figures)
@@ -200,14 +202,17 @@ fn model(pack: &Pack, meta: &ModelMeta, joints: usize) -> miette::Result<ModelRe
         }
         ModelMeta::Limits(meta) => {
             let limiter = HostLimiter::load(pack).into_diagnostic()?;
+            let joints = LimitsModel::from_pack(pack).into_diagnostic()?.joints;
             let figures = json!({
-                "limited_joints": limiter.table().kinds.iter().filter(|kind| **kind != 0).count(),
+                "limited_joints": joints.iter().filter(|joint| joint.count() > 0 && !joint.is_free()).count(),
                 "root_velocity_m_s": f64::from(meta.root_velocity),
                 "root_acceleration_m_s2": f64::from(meta.root_acceleration),
+                "heading_velocity_rad_s": f64::from(meta.heading_velocity),
+                "heading_acceleration_rad_s2": f64::from(meta.heading_acceleration),
                 "hold_s": f64::from(meta.hold),
                 "decay_s": f64::from(meta.decay),
-                "frozen_s": f64::from(meta.frozen),
                 "recovery_frames": limiter.recovery_frames(),
+                "capacity": format!("Limiter::<{rows}>"),
             });
             ("limits", figures)
         }
@@ -219,7 +224,9 @@ fn model(pack: &Pack, meta: &ModelMeta, joints: usize) -> miette::Result<ModelRe
 /// What every model in a pack needs and does, by name.
 pub fn models(pack: &Pack) -> miette::Result<Vec<ModelReport>> {
     let metadata = pack.metadata();
-    metadata.models.iter().map(|meta| model(pack, &meta, metadata.joints.len())).collect()
+    // A face has no joints, and no rig.
+    let rows = kinesic::Rig::load(pack).map_or(0, |rig| rig.rows());
+    metadata.models.iter().map(|meta| model(pack, &meta, rows)).collect()
 }
 
 fn pack(path: &Path, json: bool) -> miette::Result<()> {
@@ -246,34 +253,35 @@ fn pack(path: &Path, json: bool) -> miette::Result<()> {
     if json {
         return print_json(&report);
     }
-    println!("{}: {} pack {:?}, format 1, checksum correct", report.file, report.kind, report.name);
+    println!("{}: {} pack {:?}, format {}, checksum correct", report.file, report.kind, report.name, VERSION);
     println!("rate       {} frames a second", report.frame_rate);
     println!("size       {} bytes, of which {} are tensors, used in place", report.bytes, report.tensor_bytes);
-    println!("joints     {}: {}", joints.len(), report.joints.join(", "));
+    println!("joints     {}: {}", joints.len(), line(&report.joints.join(", ")));
     for m in &report.models {
         println!("model      {}", m.engine);
         for (name, value) in &m.figures {
             println!(
                 "           {:<42} {}",
                 name.replace('_', " "),
-                value.as_str().map_or(value.to_string(), str::to_owned)
+                line(&value.as_str().map_or(value.to_string(), str::to_owned))
             );
         }
     }
     println!("tensors");
     for (name, kind, [rows, columns]) in &report.tensors {
-        println!("           {name:<28} {kind} {rows} x {columns}");
+        println!("           {:<28} {kind} {rows} x {columns}", line(name));
     }
     if let Some(provenance) = &report.provenance {
-        println!("made by    {} with: {}", provenance.tool, provenance.command);
+        println!("made by    {} with: {}", line(&provenance.tool), line(&provenance.command));
         for input in &provenance.inputs {
-            println!("trained on {} (sha256 {})", input.path, input.sha256.chars().take(16).collect::<String>());
+            let digest: String = input.sha256.chars().take(16).collect();
+            println!("trained on {} (sha256 {})", line(&input.path), line(&digest));
         }
         for metric in &provenance.metrics {
-            println!("           {:<24} {:.2}", metric.name, metric.value);
+            println!("           {:<24} {:.2}", line(&metric.name), metric.value);
         }
         for note in &provenance.notes {
-            println!("note: {note}");
+            println!("note: {}", line(note));
         }
     }
     Ok(())
@@ -285,9 +293,9 @@ fn centimetres(length: f32) -> f64 {
 }
 
 /// `size_of::<TranslatorState<JOINTS, STATES>>()`, whose parameters are known only now.
-fn translator_state_bytes(joints: usize, states: usize) -> usize {
-    // Filters, mask and strength; heading, drift and the last root with its flag.
-    4 * (states + joints + 1) + 4 * (2 + 3 + 4)
+fn translator_state_bytes(rows: usize, states: usize) -> usize {
+    // Filters, mask and strength.
+    4 * (states + 3 * rows + 1)
 }
 
 #[cfg(test)]

@@ -2,17 +2,20 @@
 
 use std::path::{Path, PathBuf};
 
+use kinesic_host::files;
 use kinesic_host::limit::robot::{Import, Rates, Robot, RobotError, RobotMap, import};
 use kinesic_host::limit::{LimitsModel, Table};
 use kinesic_host::pack::{PackFile, Provenance};
-use kinesic_host::prepare::{Source, fingerprint};
+use kinesic_host::plain;
+use kinesic_host::prepare::Source;
 use kinesic_host::rig::Rig;
 use miette::{IntoDiagnostic, WrapErr, miette};
 use serde::Serialize;
 
 use super::clips::Reading;
 use super::inspect::is_pack;
-use super::output::{check_output, command_line, print_json, write_whole};
+use super::origin::{command_line, fingerprint, made_from};
+use super::output::{check_output, print_json, write_whole};
 
 /// Frames per second of limits for a clip's skeleton.
 const FRAME_RATE: f64 = 60.0;
@@ -25,7 +28,7 @@ const FRAME_RATE: f64 = 60.0;
 #[command(after_help = "\
 Examples:
   kinesic limits robot.urdf --map robot.toml --skeleton style.kin --acceleration 20 --out limits.kin
-  kinesic limits robot.urdf --map robot.toml --with style.kin --out robot-style.kin     # models and limits in one pack
+  kinesic limits robot.urdf --map robot.toml --with style.kin --out robot-style.kin     # a style trained on these limits
   kinesic limits limits.kin
   kinesic limits limits.kin --out limits.csv
 
@@ -35,8 +38,9 @@ A map names robot joints from the trunk outwards; skeleton joints by their own o
   l_shoulder = [\"l_shoulder_pitch\", \"l_shoulder_roll\", \"l_shoulder_yaw\"]
   l_elbow = \"l_elbow\"
   l_wrist = { urdf = [\"l_wrist\"], lower = -0.5, upper = 0.5, velocity = 4.0, acceleration = 60.0 }
-More keys: forward, up (axes of the root link, x and z); zero = \"rest\"; unmapped = \"fixed\"; root_velocity, root_acceleration, hold,
-decay, frozen; of a joint: kind (hinge, chain, ball, free), rest, bone. The page 'Put it on a robot' explains them.")]
+More keys: forward, up (axes of the root link, x and z); zero = \"rest\"; unmapped = \"fixed\"; root_velocity, root_acceleration,
+heading_velocity, heading_acceleration, height, hold, decay; of a joint: kind (hinge, chain, ball, free), rest, bone. The page
+'Put it on a robot' explains them.")]
 pub struct Args {
     /// A robot (.urdf), or a pack with limits (.kin)
     #[arg(value_name = "FILE")]
@@ -47,7 +51,7 @@ pub struct Args {
     /// Pack or clip whose joints are limited: that of the motions that the robot plays
     #[arg(long, value_name = "FILE", conflicts_with = "with")]
     skeleton: Option<PathBuf>,
-    /// Put the limits into this pack's models: the result holds both, and its joints are limited
+    /// Put the limits into this pack of models: the result holds both. Its style must be trained in the coordinates of the limits
     #[arg(long, value_name = "PACK.kin")]
     with: Option<PathBuf>,
     /// Skeleton map (TOML) for a clip with unknown joint names
@@ -60,7 +64,7 @@ pub struct Args {
     #[arg(long, value_name = "RAD/S", value_parser = rate, allow_negative_numbers = true)]
     velocity: Option<f64>,
     /// Frames per second at which the limiter is stepped (default: the pack's; 60 for a clip)
-    #[arg(long, value_name = "RATE", conflicts_with = "with", value_parser = rate, allow_negative_numbers = true)]
+    #[arg(long, value_name = "RATE", conflicts_with = "with", value_parser = frame_rate, allow_negative_numbers = true)]
     fps: Option<f64>,
     /// Pack to write (.kin), or table to export (.csv, .toml, .json)
     #[arg(long, value_name = "FILE")]
@@ -74,6 +78,13 @@ fn rate(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(rate) if (1e-3..1e5).contains(&rate) => Ok(rate),
         _ => Err("expected a number above 0".to_owned()),
+    }
+}
+
+fn frame_rate(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(rate) if (1.0..=1000.0).contains(&rate) => Ok(rate),
+        _ => Err("expected 1 to 1000 frames a second".to_owned()),
     }
 }
 
@@ -138,7 +149,7 @@ fn make(args: &Args) -> miette::Result<()> {
         false => check_table(out)?,
     }
     let read = |path: &Path| {
-        std::fs::read_to_string(path).map_err(|error| {
+        files::read_text(path).map_err(|error| {
             miette!(help = "check the path; the file is text in UTF-8", "{}: cannot be read: {error}", path.display())
         })
     };
@@ -155,7 +166,7 @@ fn make(args: &Args) -> miette::Result<()> {
         error.in_file(path)
     };
     let frame_rate = args.fps.unwrap_or(base.frame_rate);
-    let Import { model, urdf, notes } =
+    let Import { mut model, urdf, notes } =
         import(&robot, &known, &base.rig, &robot.name, frame_rate, rates).map_err(place)?;
     let mut provenance = Provenance {
         tool: format!("kinesic {}", env!("CARGO_PKG_VERSION")),
@@ -163,18 +174,28 @@ fn make(args: &Args) -> miette::Result<()> {
         ..Provenance::default()
     };
     let before = args.with.as_ref().and(base.pack.as_ref());
+    if before.is_some() {
+        model = model.onto(&base.rig).map_err(|mismatch| {
+            miette!(
+                help = "train the style in the coordinates of the limits: kinesic limits without --with, then train with --limits \
+                        limits.kin; or keep two packs and step two pipelines, the limits' after the style's",
+                "{}: {mismatch}",
+                skeleton.display()
+            )
+        })?;
+    }
     if let Some(earlier) = before.and_then(PackFile::provenance) {
-        provenance = Provenance { tool: provenance.tool, command: provenance.command, ..earlier };
+        provenance = Provenance { tool: provenance.tool, ..made_from(earlier, None) };
     }
     for path in [&args.file, map] {
-        provenance.inputs.push(fingerprint(path).into_diagnostic().wrap_err_with(|| path.display().to_string())?);
+        provenance.inputs.push(fingerprint(path)?);
     }
     let joints = base.rig.skeleton.joints.iter().zip(&urdf).filter(|(_, names)| !names.is_empty());
     provenance.notes.extend(joints.map(|(joint, names)| format!("limits of {}: {}", joint.name, names.join(", "))));
     provenance.notes.extend(notes.iter().cloned());
     let bytes = match before {
         Some(file) => model.pack_with(&file.pack().into_diagnostic()?, &base.rig, &provenance).into_diagnostic()?,
-        None => model.pack(&base.rig, &provenance),
+        None => model.pack(&base.rig, &provenance).into_diagnostic()?,
     };
     finish(args, &model, &base.rig, &urdf, notes, Some(&bytes))
 }
@@ -222,7 +243,7 @@ fn finish(
 ) -> miette::Result<()> {
     let names: Vec<String> = rig.skeleton.joints.iter().map(|joint| joint.name.clone()).collect();
     let table = Table::new(model, &names, urdf);
-    let recovery_frames = model.recovery_frames().into_diagnostic()?;
+    let recovery_frames = model.recovery_frames(rig).into_diagnostic()?;
     if let Some(out) = &args.out {
         let extension = out.extension().map(|found| found.to_ascii_lowercase());
         let text = match extension.as_ref().and_then(|found| found.to_str()) {
@@ -259,19 +280,30 @@ fn print(summary: &Summary) {
                 cell(&joint.upper),
                 cell(&joint.rest)
             );
-            println!("{}", line.trim_end());
+            println!("{}", plain::line(line.trim_end()));
         }
     }
-    println!("root             {} m/s, {} m/s^2", table.root_velocity, table.root_acceleration);
+    let height = &table.height;
     println!(
-        "faults           held for {} s, to rest in about {} s, frozen after {} s; back within {} frames",
-        table.hold, table.decay, table.frozen, summary.recovery_frames
+        "root             {} m/s, {} m/s^2; height {:.3} .. {:.3} m, at rest {:.3} m, {} m/s, {} m/s^2",
+        table.root_velocity,
+        table.root_acceleration,
+        height.lower,
+        height.upper,
+        height.rest,
+        height.velocity,
+        height.acceleration
+    );
+    println!("heading          {} rad/s, {} rad/s^2", table.heading_velocity, table.heading_acceleration);
+    println!(
+        "faults           held for {} s, to rest in about {} s; back within {} frames",
+        table.hold, table.decay, summary.recovery_frames
     );
     for note in &summary.notes {
-        println!("note: {note}");
+        println!("note: {}", plain::line(note));
     }
     if let Some(out) = &summary.out {
-        let limited = table.joints.iter().filter(|joint| joint.kind != "free").count();
-        println!("{out}: {limited} of {} joints limited, {} frames a second", table.joints.len(), table.frame_rate);
+        let limited = table.joints.iter().filter(|joint| !joint.lower.is_empty()).count();
+        println!("{out}: {limited} of {} joints limited, {} frames per second", table.joints.len(), table.frame_rate);
     }
 }

@@ -3,6 +3,7 @@
 #[macro_use]
 mod say;
 
+mod angles;
 mod apply;
 mod blend;
 mod clips;
@@ -13,11 +14,13 @@ mod eval;
 mod export;
 mod expression;
 mod face;
+mod guard;
 mod inspect;
 mod limits;
 mod mask;
 mod mix;
 mod modulate;
+mod origin;
 mod output;
 mod pictures;
 mod precision;
@@ -27,7 +30,7 @@ mod synth;
 mod train;
 mod view;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 /// Learn how a motion is performed on a workstation; perform it frame by frame on a microcontroller.
 ///
@@ -37,6 +40,12 @@ use clap::{Parser, Subcommand};
 pub struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
+    /// Write even over a file that this command reads, or twice to one file
+    #[arg(long, global = true)]
+    overwrite: bool,
+    /// Leave paths and command lines out of packs and pages; names of files and their digests stay
+    #[arg(long, global = true)]
+    private: bool,
 }
 
 const EXAMPLES: &str = "\
@@ -70,8 +79,24 @@ enum Command {
     Synth(synth::Args),
 }
 
-/// Runs a command line.
-pub fn run(cli: Cli) -> miette::Result<()> {
+/// Runs the command line of the process.
+///
+/// What was assumed about the clips is said on standard error, unless JSON carries it, also where the command fails.
+pub fn run() -> miette::Result<()> {
+    let matches = Cli::command().get_matches();
+    let cli = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
+    if !cli.overwrite {
+        guard::check(&matches)?;
+    }
+    origin::keep_private(cli.private);
+    let done = dispatch(cli);
+    for note in clips::NOTES.take() {
+        eprintln!("note: {note}");
+    }
+    done
+}
+
+fn dispatch(cli: Cli) -> miette::Result<()> {
     match cli.command.unwrap_or_else(|| Command::Demo(demo::Args::default())) {
         Command::Demo(args) => demo::run(&args),
         Command::Inspect(args) => inspect::run(&args),
@@ -95,5 +120,5 @@ pub fn run(cli: Cli) -> miette::Result<()> {
 
 /// Prints why a command failed.
 pub fn complain(report: &miette::Report) {
-    eprintln!("{report:?}");
+    say::failure(report);
 }

@@ -6,9 +6,12 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use kinesic_host::clip::Format;
-use kinesic_host::files;
+use kinesic_host::{files, plain};
 use miette::{IntoDiagnostic, WrapErr, miette};
 use serde::Serialize;
+
+use super::clips::NOTES;
+use super::say;
 
 /// Writes a file whole or not at all.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> miette::Result<()> {
@@ -58,10 +61,17 @@ fn check_folder(path: &Path) -> miette::Result<()> {
     Ok(())
 }
 
-/// Prints one JSON object.
+/// Prints one JSON object, with what was assumed about the clips in `reading`.
 pub fn print_json(value: &impl Serialize) -> miette::Result<()> {
-    let text = serde_json::to_string_pretty(value).into_diagnostic().wrap_err("cannot write JSON")?;
-    println!("{text}");
+    let mut value = serde_json::to_value(value).into_diagnostic().wrap_err("cannot write JSON")?;
+    let notes = NOTES.take();
+    if let Some(object) = value.as_object_mut()
+        && !notes.is_empty()
+    {
+        object.insert("reading".into(), notes.into());
+    }
+    let text = serde_json::to_string_pretty(&value).into_diagnostic().wrap_err("cannot write JSON")?;
+    say::raw(&format!("{}\n", plain::json(&text)));
     Ok(())
 }
 
@@ -77,18 +87,4 @@ pub fn spinner() -> ProgressBar {
     );
     bar.enable_steady_tick(Duration::from_millis(100));
     bar
-}
-
-/// The command line as given, for the provenance. What is about checkpoints is left out: a training that goes on after a kill
-/// makes the same pack as one that was never stopped.
-pub fn command_line() -> String {
-    let quoted = |arg: String| if arg.contains(' ') { format!("'{arg}'") } else { arg };
-    // Paths need not be Unicode; `std::env::args` would panic over them.
-    let args = std::env::args_os().skip(1).map(|arg| arg.to_string_lossy().into_owned());
-    let mut seconds = false;
-    let args = args.filter(|arg| {
-        let value = std::mem::replace(&mut seconds, arg == "--checkpoint-every");
-        !(value || seconds || arg == "--resume" || arg.starts_with("--checkpoint-every="))
-    });
-    std::iter::once("kinesic".to_owned()).chain(args.map(quoted)).collect::<Vec<_>>().join(" ")
 }

@@ -4,8 +4,10 @@ use std::path::{Path, PathBuf};
 
 use image::DynamicImage;
 use kinesic::face::{Landmarks, POINTS};
-use kinesic_host::face::{Face, landmarks};
-use miette::{IntoDiagnostic, WrapErr, miette};
+use kinesic_host::face::{Face, landmarks, photo};
+use miette::{IntoDiagnostic, miette};
+
+use super::clips::NOTES;
 
 /// A picture and where the face is in it.
 pub struct Photographed {
@@ -20,7 +22,10 @@ pub fn photographed(pictures: &[PathBuf], table: &Path) -> miette::Result<Vec<Ph
     let faces = landmarks::read(table, None).into_diagnostic()?;
     let one = |path: &PathBuf| {
         let face = find(&faces, path, table)?;
-        let picture = image::open(path).into_diagnostic().wrap_err_with(|| path.display().to_string())?;
+        let (picture, turned) = photo::open(path).into_diagnostic()?;
+        if turned {
+            NOTES.add(path, &["Turned upright, as its EXIF orientation says.".to_owned()]);
+        }
         inside(&face.landmarks, &picture, path)?;
         Ok(Photographed { name: face.picture.clone(), picture, landmarks: face.landmarks })
     };

@@ -11,7 +11,8 @@ use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
 
 use super::clips::{Reading, clip_paths};
-use super::output::{check_output, command_line, print_json, spinner, write_whole};
+use super::origin::made_from;
+use super::output::{check_output, print_json, spinner, write_whole};
 use super::precision::Precision;
 
 /// Store a body-mechanics network as int8 or a translator as int16, for parts without an FPU and with little flash
@@ -61,8 +62,7 @@ struct Summary {
 pub fn run(args: &Args) -> miette::Result<()> {
     check_output(&args.out, "kin")?;
     let file = PackFile::read(&args.pack).into_diagnostic()?;
-    let mut provenance =
-        file.provenance().ok_or_else(|| miette!("{}: its provenance cannot be read", args.pack.display()))?;
+    let earlier = file.provenance().ok_or_else(|| miette!("{}: its provenance cannot be read", args.pack.display()))?;
     let has_translator =
         file.pack().into_diagnostic()?.metadata().models.iter().any(|model| model.translator().is_some());
     let precision = args.precision.unwrap_or(if has_translator { Precision::I16 } else { Precision::I8 });
@@ -73,8 +73,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
         ));
     }
     let name = precision.name();
-    provenance.notes.push(format!("{name}, from a pack that was made with: {}", provenance.command));
-    provenance.command = command_line();
+    let mut provenance = made_from(earlier, Some(name));
     let bar = spinner();
     let rounded = PackFile::from_bytes(&precision.of(file.bytes().to_vec(), &provenance)?);
     let (before, after) = (file.pack().into_diagnostic()?, rounded.pack().into_diagnostic()?);
@@ -152,7 +151,7 @@ fn measure(
     }
     let found = match precision {
         Precision::I8 => difference(before, after, &clips),
-        _ => translated_difference(before, after, &clips),
+        _ => translated_difference(before, after, &rig, &clips),
     };
     found.into_diagnostic()
 }

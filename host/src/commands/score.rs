@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use kinesic_host::emotion::evaluate::{Scorer, mean};
 use kinesic_host::emotion::segment::FRAME_RATE;
 use kinesic_host::pack::PackFile;
+use kinesic_host::plain;
 use kinesic_host::prepare::Source;
 use miette::{IntoDiagnostic, WrapErr};
 use serde::Serialize;
@@ -45,7 +46,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let bar = spinner();
     let mut clips = Vec::new();
     for path in clip_paths(&args.clips)? {
-        bar.set_message(format!("reading {}", path.display()));
+        bar.set_message(format!("reading {}", plain::line(&path.display().to_string())));
         let source = Source::read(&path, &reading).into_diagnostic()?;
         let motions = scorer.read(&source.on_rig(&scorer.rig, FRAME_RATE).into_diagnostic()?);
         clips.push(Clip { file: source.name(), strength: mean(&motions), motions });
@@ -74,7 +75,7 @@ struct Clip {
 }
 
 fn print(scores: &Scores) {
-    let heads: Vec<String> = scores.attributes.iter().map(|name| format!("{name:>24}")).collect();
+    let heads: Vec<String> = scores.attributes.iter().map(|name| format!("{:>24}", plain::line(name))).collect();
     println!("motions {}  clip", heads.join(" "));
     for clip in &scores.clips {
         let cell = |(index, mean): (usize, &f64)| {
@@ -86,6 +87,6 @@ fn print(scores: &Scores) {
         let cells: Vec<String> = clip.strength.iter().enumerate().map(cell).collect();
         let none = || format!("{:>24}", "no whole stride");
         let cells = if cells.is_empty() { none() } else { cells.join(" ") };
-        println!("{:>7} {cells}  {}", clip.motions.len(), clip.file);
+        println!("{:>7} {cells}  {}", clip.motions.len(), plain::line(&clip.file));
     }
 }

@@ -2,11 +2,13 @@
 
 use std::path::PathBuf;
 
+use kinesic::emotion::EmotionState;
 use kinesic::model::AttributeMeta;
 use kinesic_host::emotion::HostEmotion;
-use kinesic_host::emotion::play::{Settings, Strengths, play, score};
+use kinesic_host::emotion::evaluate::Scorer;
+use kinesic_host::emotion::play::{Settings, Strengths, play};
 use kinesic_host::pack::PackFile;
-use kinesic_host::rig::Rig;
+use kinesic_host::plain;
 use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
 
@@ -53,8 +55,8 @@ struct Attribute {
     asked: [f32; 2],
     /// What played: asked for, held inside the range.
     played: [f32; 2],
-    /// What the ranking function says of the keyframes.
-    score: [f32; 2],
+    /// What the ranking function reads from the motion that stays at these strengths.
+    score: [f64; 2],
     plausible: [f32; 2],
 }
 
@@ -90,11 +92,14 @@ pub fn run(args: &Args) -> miette::Result<()> {
     if args.seconds.is_some_and(|seconds| !(seconds > 0.0 && seconds <= 3600.0)) {
         return Err(miette!("--seconds: expected more than 0, at most 3600"));
     }
+    if args.seconds.is_none() {
+        check_length(args, &emotion, &from, fps)?;
+    }
     let played = play(&pack, &Settings { from, to, fps, seconds: args.seconds }).into_diagnostic()?;
-    let rig = Rig::from_pack(&pack).into_diagnostic()?;
-    rig.clip(&played.poses, 1.0 / fps).write(&args.out).into_diagnostic()?;
+    let scorer = Scorer::load(&pack).into_diagnostic()?;
+    let scores = [scorer.made(&pack, &from).into_diagnostic()?, scorer.made(&pack, &to).into_diagnostic()?];
+    scorer.rig.clip(&played.poses, 1.0 / fps).write(&args.out).into_diagnostic()?;
 
-    let scores = [score(&pack, &from).into_diagnostic()?, score(&pack, &to).into_diagnostic()?];
     let both = |of: [Strengths; 2], at: usize| of.map(|strengths| strengths[at]);
     let travel = match (played.poses.first(), played.poses.last()) {
         (Some(first), Some(last)) => (last.root - first.root).xz().norm(),
@@ -116,7 +121,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
                 name: attribute.name.to_owned(),
                 asked: both([from, to], at),
                 played: both(played.strength, at),
-                score: both(scores, at),
+                score: scores.each_ref().map(|scores| scores[at]),
                 plausible: attribute.strength,
             })
             .collect(),
@@ -128,26 +133,56 @@ pub fn run(args: &Args) -> miette::Result<()> {
     Ok(())
 }
 
+/// Frames that are made at most where the pack alone says how long: 200 MB of them.
+const MOST_FRAMES: f64 = 40_000.0;
+
+/// Refuses a motion that lasts longer than anybody may have wanted, unless it is asked for.
+fn check_length(args: &Args, emotion: &HostEmotion, from: &Strengths, fps: f64) -> miette::Result<()> {
+    let mut state = Box::new(EmotionState::new());
+    state.strength = *from;
+    emotion.change(&mut state);
+    let rounds = if emotion.meta().cycle { 3.0 } else { 1.0 };
+    let seconds = rounds * f64::from(state.seconds());
+    if seconds * fps <= MOST_FRAMES {
+        return Ok(());
+    }
+    Err(miette!(
+        help = "say how long with --seconds, or ask for fewer frames a second with --fps",
+        "{}: the motion takes {seconds:.0} s, {:.0} frames; at most {MOST_FRAMES} are made without --seconds",
+        args.pack.display(),
+        seconds * fps
+    ))
+}
+
 fn print(summary: &Summary) {
     let what = if summary.cycle { "a round takes" } else { "it takes" };
     let [first, last] = summary.round_s;
     println!(
         "{}: {}, {} frames at {} a second, {:.2} s; {what} {first:.2} s at the start, {last:.2} s at the end; {:.2} m of way",
-        summary.out, summary.motion, summary.frames, summary.fps, summary.seconds, summary.travel_m
+        summary.out,
+        plain::line(&summary.motion),
+        summary.frames,
+        summary.fps,
+        summary.seconds,
+        summary.travel_m
     );
     println!("attribute            asked             played             scores     of plausible");
     let two = |[a, b]: [f32; 2]| format!("{a:.3} .. {b:.3}");
+    let scores = |[a, b]: [f64; 2]| format!("{a:.3} .. {b:.3}");
     for attribute in &summary.attributes {
         println!(
             "{:<12} {:>16}   {:>16}   {:>16}   {:>14}",
-            attribute.name,
+            plain::line(&attribute.name),
             two(attribute.asked),
             two(attribute.played),
-            two(attribute.score),
+            scores(attribute.score),
             two(attribute.plausible)
         );
         if attribute.asked != attribute.played {
-            println!("note: {}: asked for more than nearly all training motions show; held", attribute.name);
+            println!(
+                "note: {}: asked for more than nearly all training motions show; held",
+                plain::line(&attribute.name)
+            );
         }
     }
 }

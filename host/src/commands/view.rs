@@ -14,7 +14,8 @@ use serde::Serialize;
 
 use super::clips::{Reading, clip_paths};
 use super::inspect::is_pack;
-use super::output::{check_output, command_line, print_json, spinner, write_whole};
+use super::origin::command_line;
+use super::output::{check_output, print_json, spinner, write_whole};
 use super::pictures::{Photographed, photographed};
 
 /// Make a page on which packs play clips, emotions and faces, live: one HTML file that opens from disk
@@ -193,7 +194,7 @@ fn made_walk(seed: u64) -> miette::Result<ViewClip> {
         let seconds = SECONDS * Manner::NEUTRAL.cadence / manner.cadence;
         let clip = walk(manner, seconds, 60.0, 0.3, seed);
         let map = JointMap::detect(&clip.skeleton).ok_or_else(|| miette!("the made skeleton is not known"))?;
-        Ok::<_, miette::Report>(Source { path: PathBuf::from(name), clip, map })
+        Ok::<_, miette::Report>(Source { path: PathBuf::from(name), clip, map, log: None })
     };
     let seeds = seed.wrapping_mul(1000);
     Ok(ViewClip {

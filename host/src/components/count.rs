@@ -61,6 +61,15 @@ pub(super) fn choose_kept(motion: &Motion, sparsity: &Sparsity, reached: &Reache
     (Choice { count: count.max(1), reason, tried }, found)
 }
 
+/// Whether the result of a step of [`kept`] can be one of so many components of this motion.
+pub(super) fn fits(motion: &Motion, count: &str, result: &[f64]) -> bool {
+    let Some((columns, rest)) = result.split_first() else { return false };
+    let most = count.parse::<usize>().unwrap_or(0).min(motion.channels());
+    let columns = (1..=most).find(|count| *count as f64 == *columns);
+    let needed = columns.map(|columns| columns * (motion.frames() + motion.channels()));
+    needed.is_some_and(|needed| rest.len() >= needed) && rest.iter().all(|x| x.is_finite())
+}
+
 /// [`sparse`] of a motion of this name, or what an earlier run has found.
 pub(super) fn kept(motion: &Motion, count: usize, sparsity: &Sparsity, reached: &Reached, name: &str) -> Sparse {
     let found = reached.always(&format!("{name} {count}"), || {
@@ -75,8 +84,8 @@ pub(super) fn kept(motion: &Motion, count: usize, sparsity: &Sparsity, reached: 
     Sparse { factors, history: history.to_vec() }
 }
 
-/// Root mean square distance of a joint from where it should be, cm.
+/// Root mean square distance of a joint from where it should be, cm, to first order: what the levers say.
 pub fn joint_error(motion: &Motion, found: &Sparse) -> f64 {
     let rest = (&motion.values - found.factors.product()).squared_norm_l2();
-    100.0 * motion.scale * (3.0 * rest / (motion.frames() * motion.channels()).max(1) as f64).sqrt()
+    100.0 * motion.deviation * (3.0 * rest / (motion.frames() * motion.channels()).max(1) as f64).sqrt()
 }

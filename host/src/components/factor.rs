@@ -6,12 +6,12 @@ use faer::{Accum, Mat, MatRef, Par};
 use crate::vector::{Work, dot, vectorised};
 
 /// `M ~ W C`. Column `k` of `weights` is the time course of component `k`, at most one in root mean square; column `k` of
-/// `components` holds its `[3 joints]` directions, in deviations.
+/// `components` holds its `[3 rows]` directions, in deviations.
 #[derive(Clone, Debug)]
 pub struct Factors {
     /// `W`, `[frames x K]`.
     pub weights: Mat<f64>,
-    /// `C` transposed, `[3 joints x K]`.
+    /// `C` transposed, `[3 rows x K]`.
     pub components: Mat<f64>,
 }
 
@@ -47,13 +47,13 @@ impl Factors {
         if norm > 0.0 { (motion - self.product()).norm_l2() / norm } else { 0.0 }
     }
 
-    /// `1/F |M - W C|^2 + penalty * sum_k sum_i |C_k,joint i|_2`.
+    /// `1/F |M - W C|^2 + penalty * sum_k sum_i |C_k,row i|_2`.
     pub fn objective(&self, motion: MatRef<'_, f64>, penalty: f64) -> f64 {
         let frames = motion.nrows().max(1) as f64;
         (motion - self.product()).squared_norm_l2() / frames + penalty * self.group_norms()
     }
 
-    /// Which joints each component moves, `[K x joints]`.
+    /// Which joints each component moves, `[K x rows]`.
     pub fn support(&self) -> Vec<Vec<bool>> {
         let moves = |k: usize| groups(self.column(k)).map(|g| g != [0.0; 3]).collect();
         (0..self.count()).map(moves).collect()
@@ -94,11 +94,11 @@ impl Factors {
     }
 }
 
-/// Minimises `1/F |M - W C|^2 + penalty * sum_k sum_i |C_k,joint i|_2`, every column of `W` at most one in root mean square,
+/// Minimises `1/F |M - W C|^2 + penalty * sum_k sum_i |C_k,row i|_2`, every column of `W` at most one in root mean square,
 /// by exact minimisation over one joint group or one column of `W` at a time: the objective never rises.
 ///
 /// Returns the factors, and the objective at the start and after every sweep. Phong 2018, eq. 1, after Neumann 2013. Cost of
-/// a sweep: `2 F 3N K + (F + 3N) K^2` multiply-adds.
+/// a sweep: `2 F 3R K + (F + 3R) K^2` multiply-adds.
 pub fn descend(motion: MatRef<'_, f64>, start: Factors, penalty: f64, descent: &Descent) -> (Factors, Vec<f64>) {
     let mut factors = start;
     let frames = motion.nrows().max(1) as f64;

@@ -4,13 +4,13 @@ use faer::{Mat, MatRef};
 use nalgebra::{Matrix3, SymmetricEigen};
 
 use super::factor::{Factors, column_mut};
-use crate::vector::{Work, dot, vectorised};
+use crate::vector::{Work, dot, oriented, vectorised};
 
 /// `count` components, from the three main directions of every joint, joined pair by pair where it costs least.
 ///
 /// Two components that move different joints, with energies `a`, `b` and correlation `r` in time, leave
 /// `(a + b) / 2 - sqrt(((a - b) / 2)^2 + r^2 a b)` when one time course must do for both. No joint is in a component twice
-/// unless there is no other way. Cost: `F (3N)^2 / 2` multiply-adds and `(3N)^2` comparisons a join.
+/// unless there is no other way. Cost: `F (3R)^2 / 2` multiply-adds and `(3R)^2` comparisons a join.
 pub fn gather(motion: MatRef<'_, f64>, count: usize) -> Factors {
     let channels = motion.ncols();
     let mut parts = single(motion);
@@ -64,6 +64,7 @@ fn single(motion: MatRef<'_, f64>) -> Vec<Part> {
         });
         let eigen = SymmetricEigen::new(scatter);
         for (energy, direction) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+            let direction = oriented(direction.iter().copied().collect());
             if *energy <= 1e-12 * total {
                 continue;
             }

@@ -33,7 +33,7 @@ impl Default for Optimiser {
 /// Learned components.
 #[derive(Clone, Debug)]
 pub struct Learned {
-    /// `C_X` transposed, `[3 joints x K]`, in deviations.
+    /// `C_X` transposed, `[3 rows x K]`, in deviations.
     pub components: Mat<f64>,
     /// Objective at the start and after every step.
     pub history: Vec<f64>,

@@ -1,32 +1,8 @@
-//! Figures of a motion: bone lengths, jerk, distances.
+//! Figures of a motion: speed, jerk, distances.
 
 use faer::Mat;
-use serde::Serialize;
 
-use super::objective::{Bone, gram};
-
-/// How far bones are from their rest length, percent of it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct BoneError {
-    /// Mean over frames and bones.
-    pub mean_percent: f64,
-    /// The worst bone in the worst frame.
-    pub max_percent: f64,
-}
-
-/// Bone errors of heading-local (or world) positions, row-major `[frames x 3 joints]`, m.
-pub fn bone_error(positions: &[f64], channels: usize, bones: &[Bone]) -> BoneError {
-    let (mut sum, mut max, mut count) = (0.0, 0.0f64, 0usize);
-    for row in positions.chunks_exact(channels.max(1)) {
-        for bone in bones {
-            let [a, b] = bone.joints.map(|j| &row[3 * j..3 * j + 3]);
-            let length = a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
-            let error = 100.0 * (length / bone.length - 1.0).abs();
-            (sum, max, count) = (sum + error, max.max(error), count + 1);
-        }
-    }
-    BoneError { mean_percent: sum / count.max(1) as f64, max_percent: max }
-}
+use super::objective::gram;
 
 /// Mean size of the third derivative of the joints' positions, m/s^3.
 pub fn jerk(positions: &[f64], channels: usize, fps: f64) -> f64 {
@@ -41,6 +17,16 @@ pub fn jerk(positions: &[f64], channels: usize, fps: f64) -> f64 {
         }
     }
     sum / count.max(1) as f64
+}
+
+/// Fastest joint of positions `[frames x 3 joints]`, m per frame.
+pub fn top_speed(positions: &[f64], channels: usize) -> f64 {
+    let frames = positions.chunks_exact(channels.max(1));
+    let steps = frames.clone().zip(frames.skip(1)).flat_map(|(a, b)| {
+        let joints = a.as_chunks::<3>().0.iter().zip(b.as_chunks::<3>().0);
+        joints.map(|(a, b)| a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt())
+    });
+    steps.fold(0.0, f64::max)
 }
 
 /// `|C_C - C_X| / |C_C|`.

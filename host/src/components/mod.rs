@@ -10,7 +10,10 @@
 //! | `count` | how many components |
 //! | `objective`, `learn` | what style learning minimises, with its gradient; Adam from seeded noise |
 //! | [`train()`], `model` | from two clips to a pack; the trade-off curve |
-//! | `play`, `evaluate`, `measure` | through the device's code; bones, jerk, distances |
+//! | `play`, `evaluate`, `measure` | through the device's code; jerk, distances |
+//!
+//! A matrix holds coordinates times their levers: see [`Motion`]. Its groups, *joint groups* here, are rows of coordinates: a ball's
+//! three, or up to three servos.
 
 mod count;
 mod evaluate;
@@ -30,14 +33,14 @@ mod sparse;
 mod train;
 
 pub use count::{Choice, choose, joint_error};
-pub use evaluate::{EvaluateError, RECORDED, Report, evaluate};
+pub use evaluate::{EvaluateError, RECORDED, RecordedDegrees, Report, ToClip, evaluate, to_clip};
 pub use factor::{Descent, Factors, descend};
 pub use gather::gather;
 pub use learn::{Learned, Optimiser, learn, noise};
 pub use matrix::{FRAME_RATE, Motion};
-pub use measure::{BoneError, bone_error, content_distance, jerk, style_distance};
+pub use measure::{content_distance, jerk, style_distance};
 pub use model::ComponentsModel;
-pub use objective::{Bone, Objective, Terms, Weights, bones, gram};
+pub use objective::{Objective, Terms, Weights, gram};
 pub use pca::pca;
 pub use play::{HostComponents, MAX_COMPONENTS, Settings, play, play_stored};
 pub use prune::prune;

@@ -11,33 +11,31 @@ use crate::rig::Rig;
 /// Damping of the projection, as a share of a component's mean energy: a live pose is not one of the training poses.
 const DAMPING: f64 = 1e-4;
 
-/// Trained components. Matrices hold one component a column, `[3 joints x K]`, in deviations.
+/// Trained components. Matrices hold one component a column, `[3 rows x K]`, in deviations.
 #[derive(Clone, Debug)]
 pub struct ComponentsModel {
     /// Name of the style.
     pub style: String,
     /// Frames per second.
     pub frame_rate: f64,
-    /// Mean pose of the content, m, `[3 joints]`.
+    /// Mean coordinates of the content, rad or m, `[3 rows]`.
     pub mean: Vec<f64>,
-    /// What the style adds to the mean pose, m, `[3 joints]`.
+    /// What the style adds to the mean, rad or m, `[3 rows]`.
     pub shift: Vec<f64>,
-    /// Metres in a deviation.
-    pub scale: f64,
+    /// Coordinates per deviation, rad or m, `[3 rows]`.
+    pub scale: Vec<f64>,
     /// `W_C` and `C_C`.
     pub content: Factors,
     /// `C_X`.
     pub learned: Mat<f64>,
     /// `[travel x, travel z, sine, cosine of the turn]` of every frame of the content.
     pub track: Vec<[f32; 4]>,
-    /// Local rotations `[i, j, k, w]` of the reference pose.
-    pub reference: Vec<[f32; 4]>,
     /// Plausible strengths.
     pub strength: [f64; 2],
 }
 
 impl ComponentsModel {
-    /// The model as a pack for `rig`.
+    /// The model as a pack for `rig`, the one that it was trained on.
     pub fn pack(&self, rig: &Rig, provenance: &Provenance) -> Vec<u8> {
         let mut pack = PackWriter::new(Kind::Components, &self.style, self.frame_rate as f32);
         rig.write(&mut pack);
@@ -51,17 +49,20 @@ impl ComponentsModel {
         let single = |values: &[f64]| values.iter().map(|x| *x as f32).collect::<Vec<_>>();
         pack.f32s("components/mean", 3, &single(&self.mean));
         pack.f32s("components/shift", 3, &single(&self.shift));
-        pack.tiled("components/project", self.mean.len(), &rows(self.projection().as_ref(), 1.0 / self.scale));
-        pack.tiled("components/compose", count, &rows(self.content.components.as_ref(), self.scale));
+        // Learned in deviations, used on coordinates.
+        let scaled = |matrix: &Mat<f64>| Mat::from_fn(matrix.nrows(), count, |c, k| self.scale[c] * matrix[(c, k)]);
+        let projection = self.projection();
+        let projection = Mat::from_fn(count, self.scale.len(), |k, c| projection[(k, c)] / self.scale[c]);
+        pack.tiled("components/project", self.scale.len(), &row_major(projection.as_ref()));
+        pack.tiled("components/compose", count, &row_major(scaled(&self.content.components).as_ref()));
         let change = &self.learned - &self.content.components;
-        pack.tiled("components/change", count, &rows(change.as_ref(), self.scale));
-        pack.f32s("components/weights", count, &rows(self.content.weights.as_ref(), 1.0));
+        pack.tiled("components/change", count, &row_major(scaled(&change).as_ref()));
+        pack.f32s("components/weights", count, &row_major(self.content.weights.as_ref()));
         pack.f32s("components/track", 4, self.track.as_flattened());
-        pack.f32s("components/reference", 4, self.reference.as_flattened());
         pack.finish(provenance)
     }
 
-    /// Pseudo-inverse `[K x 3 joints]` of the content components.
+    /// Pseudo-inverse `[K x 3 rows]` of the content components.
     fn projection(&self) -> Mat<f64> {
         let components = self.content.components.as_ref();
         let mut gram = product(components.transpose(), components);
@@ -74,7 +75,7 @@ impl ComponentsModel {
 }
 
 /// Row-major, single precision.
-fn rows(matrix: MatRef<'_, f64>, factor: f64) -> Vec<f32> {
-    let row = |r: usize| (0..matrix.ncols()).map(move |c| (factor * matrix[(r, c)]) as f32);
+fn row_major(matrix: MatRef<'_, f64>) -> Vec<f32> {
+    let row = |r: usize| (0..matrix.ncols()).map(move |c| matrix[(r, c)] as f32);
     (0..matrix.nrows()).flat_map(row).collect()
 }

@@ -4,10 +4,11 @@ use faer::linalg::matmul::triangular::{BlockStructure, matmul};
 use faer::{Accum, Mat, MatRef, Par, Side};
 
 use super::factor::{Factors, column, column_mut, product};
+use crate::vector::oriented;
 
 /// The `count` strongest principal components, weight columns at one in root mean square.
 ///
-/// Cost: `F (3N)^2 / 2` multiply-adds and an eigendecomposition of `3N x 3N`.
+/// Cost: `F (3R)^2 / 2` multiply-adds and an eigendecomposition of `3R x 3R`.
 pub fn pca(motion: MatRef<'_, f64>, count: usize) -> Factors {
     let (frames, channels) = (motion.nrows(), motion.ncols());
     // One half of it is all that the decomposition reads.
@@ -20,7 +21,7 @@ pub fn pca(motion: MatRef<'_, f64>, count: usize) -> Factors {
         // Ascending in faer.
         for k in 0..count.min(channels) {
             let value = eigen.S()[channels - 1 - k].max(0.0);
-            let vector: Vec<f64> = (0..channels).map(|c| eigen.U()[(c, channels - 1 - k)]).collect();
+            let vector = oriented((0..channels).map(|c| eigen.U()[(c, channels - 1 - k)]).collect());
             let deviation = (value / frames.max(1) as f64).sqrt();
             column_mut(&mut components, k).iter_mut().zip(&vector).for_each(|(c, v)| *c = deviation * v);
         }

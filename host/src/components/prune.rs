@@ -87,7 +87,7 @@ pub(super) fn exchange(fit: &mut Fit, count: usize) {
 
 /// Adds the groups that would lower the error most at fixed weights; returns how many there were before.
 fn grow(fit: &mut Fit, share: f64) -> usize {
-    // `(M - W C)' W`, [3N x K].
+    // `(M - W C)' W`, [3R x K].
     let open = &fit.cross - product(fit.components.as_ref(), fit.inner.as_ref());
     let mut cholesky = Cholesky::default();
     let mut shadow = Vec::new();

@@ -18,7 +18,7 @@ const DAMPING: f64 = 1e-5;
 
 /// Minimises `|M - W C|^2` over `W` and over those joint groups of `C` that are not zero, in turn.
 ///
-/// Cost: `F (3N)^2` multiply-adds once; a round costs `(3N)^2 K + 3 3N K^2` and a Cholesky factorisation a joint of the size
+/// Cost: `F (3R)^2` multiply-adds once; a round costs `(3R)^2 K + 3 3R K^2` and a Cholesky factorisation a joint of the size
 /// of its components, however long the motion is.
 pub fn refit(motion: MatRef<'_, f64>, factors: &Factors) -> Factors {
     let scatter = Scatter::new(motion);
@@ -30,7 +30,7 @@ pub fn refit(motion: MatRef<'_, f64>, factors: &Factors) -> Factors {
 /// All that least squares needs of a motion.
 pub(super) struct Scatter<'a> {
     motion: MatRef<'a, f64>,
-    /// `M'M`, `[3N x 3N]`.
+    /// `M'M`, `[3R x 3R]`.
     square: Mat<f64>,
     /// `|M|^2`.
     total: f64,
@@ -46,13 +46,13 @@ impl<'a> Scatter<'a> {
 #[derive(Clone)]
 pub(super) struct Fit<'a> {
     scatter: &'a Scatter<'a>,
-    /// `C` transposed, `[3N x K]`. After a change, [`rounds`](Self::rounds) fits the rest to it.
+    /// `C` transposed, `[3R x K]`. After a change, [`rounds`](Self::rounds) fits the rest to it.
     pub components: Mat<f64>,
-    /// `P`, `[3N x K]`.
+    /// `P`, `[3R x K]`.
     projection: Mat<f64>,
     /// `W'W`, `[K x K]`.
     pub inner: Mat<f64>,
-    /// `M'W`, `[3N x K]`.
+    /// `M'W`, `[3R x K]`.
     pub cross: Mat<f64>,
 }
 

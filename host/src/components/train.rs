@@ -1,21 +1,27 @@
 //! From two clips to a model.
 
-use kinesic::pose::{Heading, World, forward};
+use faer::Mat;
+use kinesic::Pose;
+use kinesic::model::LoadError;
 
-use super::count::{Choice, choose_kept, kept};
-use super::factor::{Factors, flat, unflat};
+use super::count::{Choice, choose_kept, fits, kept};
+use super::factor::{Factors, column, column_mut, flat, unflat};
 use super::learn::{Learned, Optimiser, learn, noise};
 use super::matrix::{FRAME_RATE, Motion};
-use super::measure::{BoneError, bone_error, content_distance, style_distance};
+use super::measure::{content_distance, style_distance, top_speed};
 use super::model::ComponentsModel;
-use super::objective::{Bone, Objective, Terms, Weights, bones};
+use super::objective::{Objective, Terms, Weights};
+use super::play::{Settings, play_stored};
 use super::sparse::{Sparse, Sparsity};
+use crate::align::{AlignError, Ends};
 use crate::clip::Clip;
-use crate::reached::Reached;
-use crate::rig::{MAX_JOINTS, Rig};
+use crate::measure::{Degrees, Measurable, compare};
+use crate::pack::{PackFile, Provenance};
+use crate::reached::{Reached, Unreadable};
+use crate::rig::{HostFrame, MAX_JOINTS, Rig};
 
-/// Mean bone error, percent, up to which an exaggerated strength counts as plausible before the bones are restored.
-const PLAUSIBLE: f64 = 5.0;
+/// At a plausible strength the fastest joint is at most so many times faster than the fastest of the training clips.
+const SPEED_UP: f64 = 1.5;
 
 /// What to train.
 #[derive(Clone, Debug)]
@@ -78,6 +84,15 @@ pub enum TrainError {
         /// `content` or `style`.
         which: &'static str,
     },
+    /// The clips cannot be compared.
+    #[error(transparent)]
+    Align(#[from] AlignError),
+    /// The device's code refuses the model.
+    #[error("the device refuses the model: {0}")]
+    Refused(#[from] LoadError),
+    /// A checkpoint whose steps are none of this training.
+    #[error(transparent)]
+    Checkpoint(#[from] Unreadable),
 }
 
 /// A model and how it came about.
@@ -99,11 +114,14 @@ pub struct Trained {
     pub style_distance: f64,
     /// `|C_C - C_X| / |C_C|`.
     pub content_distance: f64,
-    /// Of `mean + W C_X`, before the device restores the bones.
-    pub composed_bones: BoneError,
+    /// From the content to the style, over frames matched by dynamic time warping.
+    pub degrees_before: Degrees,
+    /// From the stored stream at strength 1 to the style, matched alike.
+    pub degrees_after: Degrees,
 }
 
-/// Learns components of `style` for the motion of `content`, both on `rig` at [`FRAME_RATE`].
+/// Learns components of `style` for the motion of `content`, both on `rig` at [`FRAME_RATE`]. `rig` should be
+/// [centred](Rig::centred) on both: its coordinates are what is learned.
 pub fn train(
     rig: &Rig,
     content: &Clip,
@@ -124,14 +142,20 @@ pub fn train_kept(
     reached: &Reached,
 ) -> Result<Trained, TrainError> {
     check(options)?;
-    let poses = rig.poses(content);
-    let content = Motion::new(&rig.locals(&poses));
-    let other = Motion::scaled(&rig.locals(&rig.poses(style)), content.scale);
+    let [poses, style_poses] = [content, style].map(|clip| rig.poses(clip));
+    let [locals, style_locals] = [&poses, &style_poses].map(|poses| rig.locals(poses));
+    let content = Motion::new(rig, &locals);
+    let other = Motion::scaled(rig, &style_locals, content.deviation);
     for (which, motion) in [("content", &content), ("style", &other)] {
         if motion.values.squared_norm_l2() <= 1e-9 {
             return Err(TrainError::Still { which });
         }
     }
+    reached.check(|name, result| match name.split_once(' ') {
+        Some(("content", count)) => fits(&content, count, result),
+        Some(("style", count)) => fits(&other, count, result),
+        _ => result.iter().all(|x| x.is_finite()),
+    })?;
     let most = content.channels().min(content.frames()).min(super::play::MAX_COMPONENTS);
     let (choice, own) = match options.count {
         None => choose_kept(&content, &options.sparsity, reached),
@@ -142,30 +166,37 @@ pub fn train_kept(
         }
     };
     let wanted = kept(&other, choice.count.min(other.frames()), &options.sparsity, reached, "style");
-    let bones = bones(rig);
     let shift: Vec<f64> = content.mean.iter().zip(&other.mean).map(|(a, b)| options.posture * (b - a)).collect();
-    let mean: Vec<f64> = content.mean.iter().zip(&shift).map(|(a, b)| a + b).collect();
-    let objective = Objective::new(&own.factors, &wanted.factors, &bones, &mean, content.scale, options.weights);
-    let learned = learned(&objective, content.channels(), choice.count, &options.optimiser, reached, "learn");
+    let objective = Objective::new(&own.factors, &wanted.factors, options.weights);
+    let start = || start(&own.factors, &wanted.factors, options.optimiser.seed);
+    let needed = 4 + content.channels() * choice.count;
+    reached.check(|name, result| !name.starts_with("learn") || result.len() >= needed)?;
+    let learned = learned(&objective, start, &options.optimiser, reached, "learn");
     let mut model = ComponentsModel {
         style: name.to_owned(),
         frame_rate: FRAME_RATE,
         mean: content.mean.clone(),
         shift,
-        scale: content.scale,
+        scale: content.scale.clone(),
         content: own.factors.clone(),
         learned: learned.components.clone(),
-        track: track(rig, &poses),
-        reference: reference(rig, &poses, &content),
+        track: track(&rig.read(&poses)),
         strength: [0.0, 1.0],
     };
-    let composed_bones = bone_error(&composed(&model, 1.0), content.channels(), &bones);
-    model.strength[1] = safe_strength(&model, &bones);
+    let [speed, style_speed] = [&locals, &style_locals].map(|l| top_speed(&l.positions, l.channels()));
+    model.strength[1] = plausible(&model, rig, locals.channels(), SPEED_UP * speed.max(style_speed));
+    let file = PackFile::from_bytes(&model.pack(rig, &Provenance::default()));
+    let result = play_stored(&file.pack()?, rig, &Settings::default())?;
+    let target = Measurable::of_poses(rig, &style_poses);
+    let to_style = |poses: &[Pose<MAX_JOINTS>]| {
+        compare(rig, &Measurable::of_poses(rig, poses), &target, Ends::Closed).map(|distance| distance.degrees)
+    };
     Ok(Trained {
         reconstruction_error: own.factors.error(content.values.as_ref()),
         style_distance: style_distance(&wanted.factors.components, &learned.components),
         content_distance: content_distance(&own.factors.components, &learned.components),
-        composed_bones,
+        degrees_before: to_style(&poses)?,
+        degrees_after: to_style(&result)?,
         model,
         choice,
         content: own,
@@ -174,26 +205,35 @@ pub fn train_kept(
     })
 }
 
-/// [`learn`] from noise, or what an earlier run has learned.
+/// Noise where the content or the style moves, 0 elsewhere: a channel that neither moves stays as it is, travel above all.
+fn start(content: &Factors, style: &Factors, seed: u64) -> Mat<f64> {
+    let mut start = noise(content.components.nrows(), content.count(), seed);
+    let moves = |of: &Factors, c: usize| (0..of.count()).any(|k| column(&of.components, k)[c] != 0.0);
+    for c in (0..start.nrows()).filter(|c| !moves(content, *c) && !moves(style, *c)) {
+        (0..start.ncols()).for_each(|k| column_mut(&mut start, k)[c] = 0.0);
+    }
+    start
+}
+
+/// [`learn`] from `start`, or what an earlier run has learned.
 fn learned(
     objective: &Objective,
-    channels: usize,
-    count: usize,
+    start: impl FnOnce() -> Mat<f64>,
     optimiser: &Optimiser,
     reached: &Reached,
     name: &str,
 ) -> Learned {
     let found = reached.always(name, || {
-        let Learned { components, history, terms } =
-            learn(objective, noise(channels, count, optimiser.seed), optimiser);
-        let Terms { content, style, bones, smooth } = terms;
-        [&[content, style, bones, smooth][..], &flat(&components), &history].concat()
+        let Learned { components, history, terms } = learn(objective, start(), optimiser);
+        let Terms { content, style, smooth } = terms;
+        let head = [components.nrows() as f64, components.ncols() as f64, content, style, smooth];
+        [&head[..], &flat(&components), &history].concat()
     });
-    let (terms, rest) = found.split_first_chunk().map_or(([0.0; 4], &[][..]), |(terms, rest)| (*terms, rest));
-    let [content, style, bones, smooth] = terms;
-    let (components, history) = rest.split_at(channels * count);
-    let terms = Terms { content, style, bones, smooth };
-    Learned { components: unflat(components, count), history: history.to_vec(), terms }
+    let (head, rest) = found.split_first_chunk().map_or(([0.0; 5], &[][..]), |(head, rest)| (*head, rest));
+    let [rows, columns, content, style, smooth] = head;
+    let (components, history) = rest.split_at(rows as usize * columns as usize);
+    let terms = Terms { content, style, smooth };
+    Learned { components: unflat(components, columns as usize), history: history.to_vec(), terms }
 }
 
 /// What training ends at for each weight of the style, content weight 1: the trade-off that the paper sets by hand.
@@ -205,53 +245,38 @@ pub struct TradeOff {
     pub style_distance: f64,
     /// `|C_C - C_X| / |C_C|`.
     pub content_distance: f64,
-    /// Of `mean + W C_X`.
-    pub bone_error_mean_percent: f64,
 }
 
 /// The trade-off curve of a trained pair over `weights`; every point starts from the same noise.
-pub fn trade_off(
-    rig: &Rig,
-    trained: &Trained,
-    options: &TrainOptions,
-    weights: &[f64],
-    reached: &Reached,
-) -> Vec<TradeOff> {
-    let bones = bones(rig);
-    let model = &trained.model;
-    let mean: Vec<f64> = model.mean.iter().zip(&model.shift).map(|(a, b)| a + b).collect();
+pub fn trade_off(trained: &Trained, options: &TrainOptions, weights: &[f64], reached: &Reached) -> Vec<TradeOff> {
+    let (content, wanted) = (&trained.content.factors, &trained.style.factors);
     let point = |style: &f64| {
-        let weights = Weights { style: *style, ..options.weights };
-        let objective =
-            Objective::new(&trained.content.factors, &trained.style.factors, &bones, &mean, model.scale, weights);
-        let (count, step) = (trained.choice.count, format!("learn with {style}"));
-        let learned = learned(&objective, mean.len(), count, &options.optimiser, reached, &step).components;
-        let model = ComponentsModel { learned, ..model.clone() };
+        let objective = Objective::new(content, wanted, Weights { style: *style, ..options.weights });
+        let start = || start(content, wanted, options.optimiser.seed);
+        let learned =
+            learned(&objective, start, &options.optimiser, reached, &format!("learn with {style}")).components;
         TradeOff {
             style_weight: *style,
-            style_distance: style_distance(&trained.style.factors.components, &model.learned),
-            content_distance: content_distance(&trained.content.factors.components, &model.learned),
-            bone_error_mean_percent: bone_error(&composed(&model, 1.0), mean.len(), &bones).mean_percent,
+            style_distance: style_distance(&wanted.components, &learned),
+            content_distance: content_distance(&content.components, &learned),
         }
     };
     weights.iter().map(point).collect()
 }
 
-/// Positions `mean + strength shift + W (C_C + strength (C_X - C_C))` before the bones are restored, m,
-/// row-major `[frames x 3 joints]`.
+/// Coordinates `mean + strength shift + W (C_C + strength (C_X - C_C))`, row-major `[frames x 3 rows]`.
 pub fn composed(model: &ComponentsModel, strength: f64) -> Vec<f64> {
     let components = &model.content.components * faer::Scale(1.0 - strength) + &model.learned * faer::Scale(strength);
     let values = Factors { weights: model.content.weights.clone(), components }.product();
-    let at = |f: usize, c: usize| model.mean[c] + strength * model.shift[c] + model.scale * values[(f, c)];
+    let at = |f: usize, c: usize| model.mean[c] + strength * model.shift[c] + model.scale[c] * values[(f, c)];
     (0..values.nrows()).flat_map(|f| (0..values.ncols()).map(move |c| (f, c))).map(|(f, c)| at(f, c)).collect()
 }
 
 fn check(options: &TrainOptions) -> Result<(), TrainError> {
-    let Weights { content, style, bones, smooth } = options.weights;
+    let Weights { content, style, smooth } = options.weights;
     let settings = [
         ("the content weight", content),
         ("the style weight", style),
-        ("the bone weight", bones),
         ("the smoothness weight", smooth),
         ("the sparsity", options.sparsity.penalty),
         ("the posture", options.posture),
@@ -265,39 +290,18 @@ fn check(options: &TrainOptions) -> Result<(), TrainError> {
     }
 }
 
-/// The largest strength of 1, 1.25, ... 2 at which the composed bones stay plausible.
-fn safe_strength(model: &ComponentsModel, bones: &[Bone]) -> f64 {
-    let plausible =
-        |strength: &f64| bone_error(&composed(model, *strength), model.mean.len(), bones).mean_percent < PLAUSIBLE;
-    [1.25, 1.5, 1.75, 2.0].into_iter().take_while(plausible).last().unwrap_or(1.0)
+/// The largest strength of 1, 1.25, ... 2 at which no joint is faster than `fastest`, m per frame, heading-local.
+fn plausible(model: &ComponentsModel, rig: &Rig, channels: usize, fastest: f64) -> f64 {
+    let slow = |strength: &f64| top_speed(&rig.positions(&composed(model, *strength)), channels) <= fastest;
+    [1.25, 1.5, 1.75, 2.0].into_iter().take_while(slow).last().unwrap_or(1.0)
 }
 
 /// Path of the content: travel in the heading's axes and turn, since the frame before.
-fn track(rig: &Rig, poses: &[kinesic::Pose<MAX_JOINTS>]) -> Vec<[f32; 4]> {
-    let mut track = Vec::with_capacity(poses.len());
-    let mut world = World::<MAX_JOINTS>::identity();
-    let mut before: Option<(Heading, nalgebra::Vector3<f32>)> = None;
-    for pose in poses {
-        forward(&rig.device(), pose, &mut world);
-        let (last, root) = before.unwrap_or_else(|| (Heading::default().follow(&rig.device(), &world), pose.root));
-        let heading = last.follow(&rig.device(), &world);
-        let travel = heading.to_local(pose.root - root);
-        let [sin, cos] = heading.turn_from(last);
-        track.push([travel.x, travel.z, sin, cos]);
-        before = Some((heading, pose.root));
-    }
-    track
-}
-
-/// The pose nearest to the mean, facing +Z.
-fn reference(rig: &Rig, poses: &[kinesic::Pose<MAX_JOINTS>], content: &Motion) -> Vec<[f32; 4]> {
-    let distance = |f: usize| content.values.row(f).squared_norm_l2();
-    let nearest = (0..poses.len()).min_by(|a, b| distance(*a).total_cmp(&distance(*b))).unwrap_or(0);
-    let Some(pose) = poses.get(nearest) else { return vec![[0.0, 0.0, 0.0, 1.0]; rig.joints()] };
-    let mut world = World::<MAX_JOINTS>::identity();
-    forward(&rig.device(), pose, &mut world);
-    let heading = Heading::default().follow(&rig.device(), &world);
-    let mut rotations: Vec<[f32; 4]> = pose.rotations[..rig.joints()].iter().map(|q| q.coords.into()).collect();
-    rotations[0] = (heading.rotation().inverse() * pose.rotations[0]).coords.into();
-    rotations
+fn track(frames: &[HostFrame]) -> Vec<[f32; 4]> {
+    let before = frames.iter().take(1).chain(frames);
+    let step = |(frame, before): (&HostFrame, &HostFrame)| {
+        let ([x, _, z], [sin, cos]) = (frame.rows[0], frame.heading.turn_from(before.heading));
+        [x, z, sin, cos]
+    };
+    frames.iter().zip(before).map(step).collect()
 }

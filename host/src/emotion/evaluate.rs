@@ -1,18 +1,22 @@
-//! Reads how strongly clips show something, by the device's ranking functions; says how well that agrees with labels.
+//! Reads how strongly clips show something, by the pack's ranking functions; says how well that agrees with labels.
 
 use kinesic::Pack;
 use kinesic::model::LoadError;
-use nalgebra::{Quaternion, UnitQuaternion};
 use serde::Serialize;
 
-use super::features::{Projection, features};
+use super::features::features;
 use super::keyframes::Keyframes;
-use super::model::{EmotionModel, HostEmotion};
+use super::model::{EmotionModel, Reading};
 use super::motions::Example;
-use super::pairs::{Pairs, pair_accuracy, spearman};
-use super::segment::{Cut, Segment, cut};
+use super::play::{Settings, Strengths, play};
+use super::segment::{Cut, FRAME_RATE, Segment, cut};
 use crate::clip::Clip;
+use crate::learn::{Pairs, pair_accuracy, spearman};
 use crate::rig::{Rig, RigError};
+use crate::vector::dot;
+
+/// Frames of a made motion between two keyframes, at least, when it is read.
+const BETWEEN: usize = 8;
 
 /// Why a pack cannot read motions.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -26,47 +30,65 @@ pub enum ScorerError {
     Rig(#[from] RigError),
 }
 
-/// Reads strengths from motions as a pack was trained to.
+/// Reads strengths from motions as a pack was trained to: from positions and velocities of the joints, whatever the motion is made of.
 #[derive(Debug)]
-pub struct Scorer<'a> {
+pub struct Scorer {
     /// Skeleton on which clips must be.
     pub rig: Rig,
-    device: HostEmotion<'a>,
+    model: EmotionModel,
     keyframes: Keyframes,
-    projection: Projection,
-    cut: Cut,
 }
 
-impl<'a> Scorer<'a> {
+impl Scorer {
     /// The reader of a pack.
-    pub fn load(pack: &Pack<'a>) -> Result<Self, ScorerError> {
-        let device = HostEmotion::load(pack)?;
-        let rig = Rig::from_pack(pack)?;
+    pub fn load(pack: &Pack) -> Result<Self, ScorerError> {
         let model = EmotionModel::from_pack(pack)?;
-        let rotation = |[i, j, k, w]: &[f32; 4]| UnitQuaternion::new_normalize(Quaternion::new(*w, *i, *j, *k).cast());
-        let keyframes = Keyframes::new(&rig, model.parts.clone(), model.reference.iter().map(rotation).collect());
-        let cut = if model.cycle { Cut::Cycles } else { Cut::Whole };
-        Ok(Self { projection: model.projection(), rig, device, keyframes, cut })
+        let Reading { parts, postures, .. } = &model.reading;
+        let keyframes = Keyframes { parts: parts.clone(), postures: postures.clone() };
+        Ok(Self { rig: Rig::from_pack(pack)?, model, keyframes })
     }
 
     /// Names of the attributes.
     pub fn attributes(&self) -> Vec<String> {
-        self.device.meta().attributes.iter().flatten().map(|attribute| attribute.name.to_owned()).collect()
+        self.model.attributes.iter().map(|attribute| attribute.name.clone()).collect()
     }
 
-    /// Components `[keyframes x components]` of a motion; `None` if it is shorter than the keyframes.
-    pub fn coordinates(&self, motion: &Segment) -> Option<Vec<f64>> {
-        Some(self.projection.coordinates(&features(motion, &self.keyframes)?))
+    /// The middle of every range of strengths.
+    pub fn middle(&self) -> Strengths {
+        let mut middle = Strengths::default();
+        for (to, attribute) in middle.iter_mut().zip(&self.model.attributes) {
+            *to = attribute.strength[0].midpoint(attribute.strength[1]);
+        }
+        middle
+    }
+
+    /// What of a clip is a motion of the pack.
+    pub fn cut(&self) -> Cut {
+        if self.model.cycle { Cut::Cycles } else { Cut::Whole }
+    }
+
+    /// Strength of every attribute in one motion; `None` if it is shorter than the keyframes.
+    pub fn score(&self, motion: &Segment) -> Option<Vec<f64>> {
+        let features = features(motion, &self.keyframes)?;
+        let Reading { rank, bias, .. } = &self.model.reading;
+        Some(rank.chunks_exact(features.len()).zip(bias).map(|(w, bias)| bias + dot(w, &features)).collect())
     }
 
     /// Strength of every attribute in every motion of a clip (on the rig, at the pack's rate); none without a whole cycle.
     pub fn read(&self, clip: &Clip) -> Vec<Vec<f64>> {
-        let attributes = self.device.attributes();
-        let score = |motion: Segment| {
-            let coordinates: Vec<f32> = self.coordinates(&motion)?.iter().map(|x| *x as f32).collect();
-            Some(self.device.score(&coordinates).iter().take(attributes).map(|x| f64::from(*x)).collect())
-        };
-        cut(&self.rig, clip, self.cut).into_iter().filter_map(score).collect()
+        cut(&self.rig, clip, self.cut()).iter().filter_map(|motion| self.score(motion)).collect()
+    }
+
+    /// What is read from the motion that a pack of this reader's makes at strengths: from one round of a cycle.
+    pub fn made(&self, pack: &Pack, strength: &Strengths) -> Result<Vec<f64>, RigError> {
+        let once = Settings { from: *strength, to: *strength, fps: FRAME_RATE, seconds: Some(0.0) };
+        let seconds = f64::from(play(pack, &once)?.round[0]);
+        // The last frame is the end.
+        let frames = ((seconds * FRAME_RATE).round() as usize).max(BETWEEN * self.model.keyframes);
+        let settings = Settings { fps: frames as f64 / seconds, seconds: Some(seconds), ..once };
+        let clip = self.rig.clip(&play(pack, &settings)?.poses, 1.0 / settings.fps);
+        let motion = Segment::new(&self.rig, &clip, 0..clip.frames());
+        Ok(self.score(&motion).unwrap_or_else(|| unreachable!("the motion has more frames than keyframes")))
     }
 }
 

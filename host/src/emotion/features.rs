@@ -3,8 +3,9 @@
 use faer::{Mat, Side};
 
 use super::keyframes::Keyframes;
-use super::samples::Samples;
 use super::segment::Segment;
+use crate::learn::Samples;
+use crate::vector::oriented;
 
 /// Positions, m, then velocities since the keyframe before, m/s, keyframe by keyframe: `[keyframes x 6 joints]`. The first
 /// keyframe has the second's velocity. `None` if the motion has fewer frames than keyframes.
@@ -62,7 +63,7 @@ impl Projection {
             // Ascending in faer.
             for k in (channels - count..channels).rev() {
                 kept += eigen.S()[k].max(0.0);
-                projection.components.extend((0..channels).map(|c| eigen.U()[(c, k)]));
+                projection.components.extend(oriented((0..channels).map(|c| eigen.U()[(c, k)]).collect()));
             }
             projection.explained = if total > 0.0 { kept / total } else { 1.0 };
         }
@@ -103,7 +104,7 @@ impl Projection {
         for row in coordinates.chunks_exact(self.count().max(1)) {
             let mut sum = vec![0.0; channels];
             for (x, b) in row.iter().zip(self.components.chunks_exact(channels)) {
-                super::samples::add_scaled(&mut sum, *x, b);
+                crate::learn::samples::add_scaled(&mut sum, *x, b);
             }
             let unscaled = sum.iter().zip(&self.mean).enumerate();
             features.extend(unscaled.map(|(c, (x, m))| m + x * if c < half { 1.0 } else { self.scale }));

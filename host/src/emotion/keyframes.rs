@@ -155,20 +155,11 @@ fn at_part(motion: &Segment, at: usize, moments: usize) -> Vec<f64> {
 pub struct Keyframes {
     /// Part of the length at which a keyframe lies on average: from 0 to 1.
     pub parts: Vec<f64>,
-    /// Mean local rotations, the root's without its heading, `[keyframes x joints]`.
-    pub rotations: Vec<UnitQuaternion<f64>>,
-    /// Positions that they give, seen from the root, m, `[keyframes x 3 joints]`.
-    postures: Vec<f64>,
+    /// Positions seen from the root, along its heading, m, `[keyframes x 3 joints]`: those of the mean rotations.
+    pub postures: Vec<f64>,
 }
 
 impl Keyframes {
-    /// Keyframes that are known, as a pack holds them.
-    pub fn new(rig: &Rig, parts: Vec<f64>, rotations: Vec<UnitQuaternion<f64>>) -> Self {
-        let at = |pose: &[UnitQuaternion<f64>]| rig.skeleton.pose_positions(&Vector3::zeros(), pose);
-        let postures = rotations.chunks_exact(rig.joints()).flat_map(at).flat_map(<[f64; 3]>::from).collect();
-        Self { parts, rotations, postures }
-    }
-
     /// Chooses `count` keyframes for all motions; those shorter than that many frames are not looked at.
     pub fn learn(rig: &Rig, motions: &[&Segment], count: usize) -> Self {
         let long = || motions.iter().copied().filter(|motion| motion.frames() >= count);
@@ -199,7 +190,10 @@ impl Keyframes {
         }
         parts.iter_mut().for_each(|x| *x /= f64::max(motions, 1.0));
         let unit = |sum: &Quaternion<f64>| UnitQuaternion::try_new(*sum, 1e-9).unwrap_or_default();
-        Self::new(rig, parts, sums.iter().map(unit).collect())
+        let rotations: Vec<UnitQuaternion<f64>> = sums.iter().map(unit).collect();
+        let posture = |pose: &[UnitQuaternion<f64>]| rig.skeleton.pose_positions(&Vector3::zeros(), pose);
+        let postures = rotations.chunks_exact(rig.joints()).flat_map(posture).flat_map(<[f64; 3]>::from).collect();
+        Self { parts, postures }
     }
 
     /// Number of keyframes.

@@ -3,6 +3,8 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
+use crate::files;
+
 /// Why a table cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{}{}: {fault}", path.display(), line.map(|line| format!(":{line}")).unwrap_or_default())]
@@ -160,8 +162,8 @@ pub fn read(path: &Path, attributes: &[Attribute]) -> Result<Vec<Labelled>, Labe
         let line = e.position().map(csv::Position::line);
         error(line, LabelsFault::Unreadable(e.to_string()))
     };
-    let mut reader =
-        csv::ReaderBuilder::new().delimiter(b'\t').quoting(false).flexible(true).from_path(path).map_err(unreadable)?;
+    let bytes = files::read(path).map_err(|error| unreadable(error.into()))?;
+    let mut reader = csv::ReaderBuilder::new().delimiter(b'\t').quoting(false).flexible(true).from_reader(&bytes[..]);
     let names: Vec<String> = reader.headers().map_err(unreadable)?.iter().map(|name| name.trim().to_owned()).collect();
     let optional = |name: &str| names.iter().position(|known| known == name);
     let column = |name: &str| {

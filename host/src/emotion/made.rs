@@ -3,13 +3,12 @@
 use std::f64::consts::TAU;
 
 use kinesic::Pose;
-use kinesic::pose::{Heading, World, forward};
-use nalgebra::{UnitQuaternion, Vector3};
 
-use super::model::{Attribute, EmotionModel};
-use super::regress::Regression;
+use super::coordinates::{channels, levers, of_poses, positions};
+use super::model::{Attribute, EmotionModel, Reading};
 use crate::clip::JointMap;
 use crate::gait::{Manner, skeleton, walk};
+use crate::learn::Regression;
 use crate::rig::{MAX_JOINTS, Rig};
 
 /// Keyframes, the paper's.
@@ -37,25 +36,28 @@ pub fn sized(attributes: usize, [keys, components, units]: Size) -> (EmotionMode
     let rig = Rig::new(&skeleton, &map).unwrap_or_else(|error| unreachable!("the gait is a rig: {error}"));
     let swaying = Manner { sway: 0.3, arms: 0.9, ..Manner::NEUTRAL };
     let manners = [Manner::NEUTRAL, Manner::WEARY, swaying].into_iter().take(attributes + 1);
-    let moments = manners.map(|manner| {
+    let moments = manners.map(|manner| -> Vec<Moment> {
         let seconds = 1.0 / manner.cadence;
         let poses = rig.poses(&walk(&manner, seconds + 0.1, FPS, 0.0, 1));
         let frame = |key: usize| (seconds * FPS * key as f64 / (keys - 1) as f64).round() as usize;
         (0..keys).map(|key| (frame(key) as f64 / FPS, poses[frame(key)])).collect()
     });
-    (over(&rig, &moments.collect::<Vec<Vec<Moment>>>(), [components, units]), rig)
+    let moments: Vec<Vec<Moment>> = moments.collect();
+    let poses: Vec<Vec<_>> = moments.iter().map(|moments| moments.iter().map(|(_, pose)| *pose).collect()).collect();
+    let rig = rig.centred(&poses.iter().map(Vec::as_slice).collect::<Vec<_>>());
+    (over(&rig, &moments, [components, units]), rig)
 }
 
 /// A time of a cycle, s, and the pose there.
 pub type Moment = (f64, Pose<MAX_JOINTS>);
 
 /// The same over other motions: the first is neutral, each other one a full strength of its attribute. `moments`: the keyframes
-/// of each, as many of one as of the other.
+/// of each, as many of one as of the other. The coordinates are those of `rig`.
 pub fn over(rig: &Rig, moments: &[Vec<Moment>], [components, units]: [usize; 2]) -> EmotionModel {
-    let cycles: Vec<Cycle> = moments.iter().map(|moments| Cycle::new(rig, moments)).collect();
+    let (levers, width) = (levers(rig), 2 * channels(rig));
+    let cycles: Vec<Cycle> = moments.iter().map(|moments| Cycle::new(rig, &levers, moments)).collect();
     let (attributes, keys) = (cycles.len() - 1, moments[0].len());
     let features: Vec<&[f64]> = cycles.iter().flat_map(|cycle| cycle.keyframes.iter().map(Vec::as_slice)).collect();
-    let width = 6 * rig.joints();
     let mean: Vec<f64> =
         (0..width).map(|c| features.iter().map(|row| row[c]).sum::<f64>() / features.len() as f64).collect();
     let directions = directions(&features, &mean, components);
@@ -70,14 +72,16 @@ pub fn over(rig: &Rig, moments: &[Vec<Moment>], [components, units]: [usize; 2])
         .collect();
     let motion = neutral.len();
     // Along a change the score rises by one: the part of it that the other change does not share is not needed here.
-    let rank: Vec<f64> = changes
+    let seen = &cycles[0].features;
+    let rank: Vec<f64> = cycles[1..]
         .iter()
-        .flat_map(|change| {
-            let square: f64 = change.iter().map(|x| x * x).sum();
-            change.iter().map(move |x| x / square).collect::<Vec<_>>()
+        .flat_map(|cycle| {
+            let change = cycle.features.iter().zip(seen).map(|(to, from)| to - from);
+            let square: f64 = change.clone().map(|x| x * x).sum();
+            change.map(move |x| x / square)
         })
         .collect();
-    let rank_bias = rank.chunks_exact(motion).map(|w| -w.iter().zip(&neutral).map(|(w, x)| w * x).sum::<f64>());
+    let bias = rank.chunks_exact(seen.len()).map(|w| -w.iter().zip(seen).map(|(w, x)| w * x).sum::<f64>());
     let wave = |at: usize| (at as f64 * 0.7 + 0.3).sin();
     EmotionModel {
         motion: "made walk".to_owned(),
@@ -98,48 +102,66 @@ pub fn over(rig: &Rig, moments: &[Vec<Moment>], [components, units]: [usize; 2])
             linear: (0..motion).flat_map(|at| changes.iter().map(move |change| change[at])).collect(),
             bias: neutral.clone(),
         },
-        basis: (0..width).flat_map(|c| directions.iter().map(move |d| d[c])).collect(),
-        mean,
-        rank_bias: rank_bias.collect(),
-        rank,
-        reference: cycles[0].reference.clone(),
-        parts: (0..keys).map(|key| key as f64 / (keys - 1) as f64).collect(),
-        velocity_scale: 1.0,
+        basis: (0..width)
+            .flat_map(|c| {
+                let back = levers.get(c).map_or(1.0, |lever| 1.0 / lever);
+                directions.iter().map(move |d| d[c] * back)
+            })
+            .collect(),
+        mean: mean.iter().enumerate().map(|(c, mean)| levers.get(c).map_or(*mean, |lever| mean / lever)).collect(),
+        reading: Reading {
+            parts: (0..keys).map(|key| key as f64 / (keys - 1) as f64).collect(),
+            postures: cycles[0].postures.clone(),
+            bias: bias.collect(),
+            rank,
+        },
+        levers,
     }
 }
 
 /// Keyframes of one cycle.
 struct Cycle {
-    /// Positions, then velocities since the keyframe before.
+    /// Channels times levers, then velocities since the keyframe before.
     keyframes: Vec<Vec<f64>>,
-    reference: Vec<[f32; 4]>,
+    /// Positions, then velocities since the keyframe before, keyframe by keyframe.
+    features: Vec<f64>,
+    /// Positions seen from the root, along its heading.
+    postures: Vec<f64>,
 }
 
 impl Cycle {
-    fn new(rig: &Rig, moments: &[Moment]) -> Self {
-        let positions: Vec<Vec<f64>> = moments.iter().map(|(_, pose)| positions(rig, pose)).collect();
-        let keyframes = (0..moments.len()).map(|key| {
-            let at = key.max(1);
-            let time = moments[at].0 - moments[at - 1].0;
-            let rates = positions[at].iter().zip(&positions[at - 1]).map(|(to, from)| (to - from) / time);
-            positions[key].iter().copied().chain(rates).collect()
+    fn new(rig: &Rig, levers: &[f64], moments: &[Moment]) -> Self {
+        let poses: Vec<_> = moments.iter().map(|(_, pose)| *pose).collect();
+        let rows = of_poses(rig, &poses);
+        let weighted: Vec<f64> = rows
+            .chunks_exact(levers.len())
+            .flat_map(|row| row.iter().zip(levers).map(|(x, lever)| x * lever))
+            .collect();
+        let coordinates: Vec<f64> =
+            rows.chunks_exact(levers.len()).flat_map(|row| row[..3 * rig.rows()].to_vec()).collect();
+        let bodies = rig.positions(&coordinates);
+        let postures = bodies.chunks_exact(3 * rig.joints()).flat_map(|body| {
+            let root = [body[0], body[1], body[2]];
+            body.iter().zip(root.into_iter().cycle()).map(|(x, root)| x - root).collect::<Vec<_>>()
         });
-        let mut reference: Vec<UnitQuaternion<f32>> = Vec::new();
-        for (_, pose) in moments {
-            let mut world = World::<MAX_JOINTS>::identity();
-            forward(&rig.device(), pose, &mut world);
-            let heading = Heading::default().follow(&rig.device(), &world);
-            reference.push(heading.rotation().inverse() * pose.rotations[0]);
-            reference.extend(&pose.rotations[1..rig.joints()]);
+        Self {
+            keyframes: with_rates(&weighted, levers.len(), moments),
+            features: with_rates(&positions(rig, &rows), 3 * rig.joints(), moments).concat(),
+            postures: postures.collect(),
         }
-        Self { keyframes: keyframes.collect(), reference: reference.iter().map(|q| q.coords.into()).collect() }
     }
 }
 
-fn positions(rig: &Rig, pose: &Pose<MAX_JOINTS>) -> Vec<f64> {
-    let mut world = World::identity();
-    forward(&rig.device(), pose, &mut world);
-    world.positions[..rig.joints()].iter().flat_map(|p: &Vector3<f32>| p.iter().map(|x| f64::from(*x))).collect()
+/// Numbers of each keyframe, then their rates since the keyframe before; the first one has the second's.
+fn with_rates(rows: &[f64], width: usize, moments: &[Moment]) -> Vec<Vec<f64>> {
+    let row = |key: usize| &rows[key * width..][..width];
+    let keyframe = |key: usize| {
+        let at = key.max(1);
+        let time = moments[at].0 - moments[at - 1].0;
+        let rates = row(at).iter().zip(row(at - 1)).map(|(to, from)| (to - from) / time);
+        row(key).iter().copied().chain(rates).collect()
+    };
+    (0..moments.len()).map(keyframe).collect()
 }
 
 /// Directions at right angles that span the features, by Gram and Schmidt; seeded ones where these are used up.

@@ -2,13 +2,12 @@
 
 use kinesic::Pack;
 use kinesic::emotion::Emotion;
-use kinesic::kernel::ROWS;
+use kinesic::kernel::ROWS as TILE;
 use kinesic::model::{ATTRIBUTES, AttributeMeta, EmotionMeta, Kind, LoadError, ModelMeta};
 
-use super::features::Projection;
-use super::regress::Regression;
+use crate::learn::Regression;
 use crate::pack::{PackWriter, Provenance};
-use crate::rig::{MAX_JOINTS, Rig};
+use crate::rig::{MAX_ROWS, Rig};
 
 /// Keyframes that the host plays.
 pub const MAX_KEYS: usize = 64;
@@ -16,7 +15,7 @@ pub const MAX_KEYS: usize = 64;
 pub const MAX_WIDTH: usize = 256;
 
 /// The device's emotion model at the host's capacity.
-pub type HostEmotion<'a> = Emotion<'a, MAX_JOINTS, MAX_KEYS, MAX_WIDTH>;
+pub type HostEmotion<'a> = Emotion<'a, MAX_ROWS, MAX_KEYS, MAX_WIDTH>;
 
 /// One attribute.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,22 +43,27 @@ pub struct EmotionModel {
     pub duration: [f32; 2],
     /// Strengths -> components `[K x D]`.
     pub network: Regression,
-    /// Back-projection `[6 joints x D]`, row-major: positions x, y, z of every joint, m, then velocities, m/s.
+    /// Back-projection `[2 channels x D]`, row-major: [`channels`](super::coordinates), rad or m, then velocities times levers, m/s.
     pub basis: Vec<f64>,
-    /// Mean keyframe `[6 joints]`.
+    /// Mean keyframe `[2 channels]`.
     pub mean: Vec<f64>,
-    /// Ranking functions `[attributes x (K D)]`.
+    /// How far a unit of each channel moves the body, m per rad or m.
+    pub levers: Vec<f64>,
+    /// How the host reads motions. The device does not use it.
+    pub reading: Reading,
+}
+
+/// How strengths are read from the positions of a motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reading {
+    /// Part of the length at which each keyframe lies on average, 0 to 1.
+    pub parts: Vec<f64>,
+    /// Posture at each keyframe: positions seen from the root, m, `[K x 3 joints]`.
+    pub postures: Vec<f64>,
+    /// Ranking functions of the [features](super::features) `[attributes x (K x 6 joints)]`.
     pub rank: Vec<f64>,
     /// Their constants.
-    pub rank_bias: Vec<f64>,
-    /// Local rotations `[i, j, k, w]` of every joint, keyframe by keyframe, that twists come from; the root's relative
-    /// to the heading of its own keyframe.
-    pub reference: Vec<[f32; 4]>,
-    /// Part of the length at which each keyframe lies on average, 0 to 1: where a reader of clips looks for it. The device
-    /// does not use it.
-    pub parts: Vec<f64>,
-    /// What velocities were divided by before the principal components were learned, 1/s. The device does not use it.
-    pub velocity_scale: f64,
+    pub bias: Vec<f64>,
 }
 
 impl EmotionModel {
@@ -73,7 +77,7 @@ impl EmotionModel {
         let mut pack = PackWriter::new(Kind::Emotion, &self.motion, self.frame_rate);
         rig.write(&mut pack);
         let (units, inputs) = (self.network.hidden_bias.len(), self.network.inputs);
-        let (components, half) = (self.components(), self.mean.len() / 2);
+        let (components, channels) = (self.components(), self.levers.len());
         let mut attributes = [None; ATTRIBUTES];
         for (to, attribute) in attributes.iter_mut().zip(&self.attributes) {
             *to = Some(AttributeMeta { name: &attribute.name, strength: attribute.strength });
@@ -92,33 +96,18 @@ impl EmotionModel {
         pack.f32s("emotion/hidden", inputs + 1, &single(&hidden));
         pack.tiled("emotion/output", units + inputs, &self.output_layers());
         pack.f32s("emotion/output_bias", components, &single(&self.network.bias));
-        let (position, velocity) = self.basis.split_at(half * components);
-        pack.tiled("emotion/position", components, &single(position));
-        pack.f32s("emotion/position_mean", 3, &single(&self.mean[..half]));
+        let (coordinates, velocity) = self.basis.split_at(channels * components);
+        pack.tiled("emotion/coordinates", components, &single(coordinates));
+        pack.f32s("emotion/mean", 1, &single(&self.mean[..channels]));
         pack.tiled("emotion/velocity", components, &single(velocity));
-        pack.f32s("emotion/velocity_mean", 3, &single(&self.mean[half..]));
-        pack.f32s("emotion/rank", self.network.bias.len(), &single(&self.rank));
-        pack.f32s("emotion/rank_bias", 1, &single(&self.rank_bias));
-        pack.f32s("emotion/reference", 4, self.reference.as_flattened());
-        pack.f32s("emotion/parts", 1, &single(&self.parts));
-        pack.f32s("emotion/velocity_scale", 1, &[self.velocity_scale as f32]);
+        pack.f32s("emotion/velocity_mean", 1, &single(&self.mean[channels..]));
+        pack.f32s("emotion/lever", 1, &single(&self.levers));
+        let Reading { parts, postures, rank, bias } = &self.reading;
+        pack.f32s("emotion/parts", 1, &single(parts));
+        pack.f32s("emotion/postures", 3, &single(postures));
+        pack.f32s("emotion/rank", 6 * rig.joints(), &single(rank));
+        pack.f32s("emotion/rank_bias", 1, &single(bias));
         pack.finish(provenance)
-    }
-
-    /// Features to components and back.
-    pub fn projection(&self) -> Projection {
-        let (width, count) = (self.mean.len(), self.components());
-        let scaled = |d: usize| {
-            let row = move |c: usize| self.basis[c * count + d] / if c < width / 2 { 1.0 } else { self.velocity_scale };
-            (0..width).map(row)
-        };
-        Projection {
-            mean: self.mean.clone(),
-            scale: self.velocity_scale,
-            components: (0..count).flat_map(scaled).collect(),
-            // What was left out of the pack is not in it.
-            explained: f64::NAN,
-        }
     }
 
     /// `[D x (units + inputs)]` of every keyframe, row-major, each padded to whole tiles.
@@ -131,7 +120,7 @@ impl EmotionModel {
                 layers.extend(single(&self.network.output[row * units..][..units]));
                 layers.extend(single(&self.network.linear[row * inputs..][..inputs]));
             }
-            layers.resize((key + 1) * components.next_multiple_of(ROWS) * (units + inputs), 0.0);
+            layers.resize((key + 1) * components.next_multiple_of(TILE) * (units + inputs), 0.0);
         }
         layers
     }
@@ -141,11 +130,10 @@ impl EmotionModel {
         // Everything that the device checks.
         let device = HostEmotion::load(pack)?;
         let meta = device.meta();
-        let (inputs, joints) = (device.attributes(), device.skeleton().joints());
+        let (inputs, channels) = (device.attributes(), pack.rows("emotion/lever")?);
         let (keyframes, components, units) = (meta.keyframes as usize, meta.components as usize, meta.hidden as usize);
-        let motion = keyframes * components;
         let hidden: &[f32] = pack.slice("emotion/hidden", units * (inputs + 1))?;
-        let padded = components.next_multiple_of(ROWS);
+        let padded = components.next_multiple_of(TILE);
         let output: &[f32] = flat(pack, "emotion/output", keyframes * padded * (units + inputs))?;
         let output = untile(units + inputs, output);
         let mut network = Regression {
@@ -154,7 +142,7 @@ impl EmotionModel {
             hidden_bias: hidden.chunks_exact(inputs + 1).map(|row| f64::from(row[inputs])).collect(),
             output: Vec::new(),
             linear: Vec::new(),
-            bias: double(pack.slice("emotion/output_bias", motion)?),
+            bias: double(pack.slice("emotion/output_bias", keyframes * components)?),
         };
         for layer in output.chunks_exact(padded * (units + inputs)) {
             for row in layer.chunks_exact(units + inputs).take(components) {
@@ -163,11 +151,11 @@ impl EmotionModel {
             }
         }
         let mut basis = Vec::new();
-        for name in ["emotion/position", "emotion/velocity"] {
-            let tiles = flat(pack, name, (3 * joints).next_multiple_of(ROWS) * components)?;
-            basis.extend(double(&untile(components, tiles)[..3 * joints * components]));
+        for name in ["emotion/coordinates", "emotion/velocity"] {
+            let tiles = flat(pack, name, channels.next_multiple_of(TILE) * components)?;
+            basis.extend(double(&untile(components, tiles)[..channels * components]));
         }
-        let mean = |name| Ok(double(pack.slice::<[f32; 3]>(name, joints)?.as_flattened()));
+        let numbers = |name| Ok::<_, LoadError>(double(pack.slice(name, channels)?));
         Ok(Self {
             motion: meta.motion.to_owned(),
             frame_rate: pack.metadata().frame_rate,
@@ -182,18 +170,28 @@ impl EmotionModel {
             duration: meta.duration,
             network,
             basis,
-            mean: [mean("emotion/position_mean")?, mean("emotion/velocity_mean")?].concat(),
-            rank: double(pack.slice("emotion/rank", inputs * motion)?),
-            rank_bias: double(pack.slice("emotion/rank_bias", inputs)?),
-            reference: pack.slice("emotion/reference", keyframes * joints)?.to_vec(),
+            mean: [numbers("emotion/mean")?, numbers("emotion/velocity_mean")?].concat(),
+            levers: numbers("emotion/lever")?,
+            reading: Reading::from_pack(pack, keyframes, inputs)?,
+        })
+    }
+}
+
+impl Reading {
+    fn from_pack(pack: &Pack, keyframes: usize, attributes: usize) -> Result<Self, LoadError> {
+        let joints = pack.metadata().joints.len();
+        let postures = pack.slice::<[f32; 3]>("emotion/postures", keyframes * joints)?;
+        Ok(Self {
             parts: double(pack.slice("emotion/parts", keyframes)?),
-            velocity_scale: f64::from(pack.slice::<f32>("emotion/velocity_scale", 1)?[0]),
+            postures: double(postures.as_flattened()),
+            rank: double(pack.slice("emotion/rank", attributes * keyframes * 6 * joints)?),
+            bias: double(pack.slice("emotion/rank_bias", attributes)?),
         })
     }
 }
 
 fn flat<'a>(pack: &Pack<'a>, name: &'static str, numbers: usize) -> Result<&'a [f32], LoadError> {
-    Ok(pack.slice::<[f32; ROWS]>(name, numbers / ROWS)?.as_flattened())
+    Ok(pack.slice::<[f32; TILE]>(name, numbers / TILE)?.as_flattened())
 }
 
 fn single(values: &[f64]) -> Vec<f32> {
@@ -207,9 +205,9 @@ fn double(values: &[f32]) -> Vec<f64> {
 /// Row-major, with the padding rows, from the order of [`kinesic::kernel::Tiled`].
 fn untile(columns: usize, tiles: &[f32]) -> Vec<f32> {
     let mut rows = vec![0.0; tiles.len()];
-    for (tile, block) in tiles.chunks_exact(ROWS * columns).enumerate() {
+    for (tile, block) in tiles.chunks_exact(TILE * columns).enumerate() {
         for (at, value) in block.iter().enumerate() {
-            rows[(tile * ROWS + at % ROWS) * columns + at / ROWS] = *value;
+            rows[(tile * TILE + at % TILE) * columns + at / TILE] = *value;
         }
     }
     rows
@@ -234,12 +232,6 @@ mod tests {
         let expected = model.network.apply(&[0.3, -0.2]);
         for (found, expected) in motion.iter().zip(&expected) {
             assert!((f64::from(*found) - expected).abs() < 1e-4, "{found} {expected}");
-        }
-        let scores = device.score(&motion);
-        for (attribute, score) in scores.iter().take(2).enumerate() {
-            let row = &model.rank[attribute * motion.len()..][..motion.len()];
-            let expected = model.rank_bias[attribute] + row.iter().zip(&expected).map(|(w, x)| w * x).sum::<f64>();
-            assert!((f64::from(*score) - expected).abs() < 1e-3, "{score} {expected}");
         }
     }
 }

@@ -7,9 +7,9 @@ use rand::seq::SliceRandom;
 use super::features;
 use super::keyframes::Keyframes;
 use super::labels::Labelled;
-use super::pairs::Pairs;
 use super::segment::{Cut, FRAME_RATE, Segment, cut};
 use crate::clip::{Clip, ReadOptions};
+use crate::learn::Pairs;
 use crate::prepare::{PrepareError, Source};
 use crate::rig::Rig;
 

@@ -1,11 +1,12 @@
 //! Plays an emotion model through the device's own code, frame by frame.
 
 use kinesic::emotion::EmotionState;
-use kinesic::model::{ATTRIBUTES, LoadError};
-use kinesic::{Pack, Pose};
+use kinesic::model::ATTRIBUTES;
+use kinesic::rig::Drift;
+use kinesic::{Pack, Pose, Rig as DeviceRig};
 
 use super::model::{HostEmotion, MAX_KEYS};
-use crate::rig::MAX_JOINTS;
+use crate::rig::{HostFrame, MAX_JOINTS, MAX_ROWS, Rig, RigError};
 
 /// Rounds of a cycle that are played where nobody says how long.
 const ROUNDS: f32 = 3.0;
@@ -14,6 +15,9 @@ const MOST_FRAMES: f64 = 24.0 * 3600.0 * 60.0;
 
 /// Strengths of all attributes.
 pub type Strengths = [f32; ATTRIBUTES];
+
+/// What a playing motion remembers, at the host's capacity.
+pub type HostState = EmotionState<MAX_ROWS, MAX_KEYS>;
 
 /// How a motion is played.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,10 +43,18 @@ pub struct Played {
     pub round: [f32; 2],
 }
 
+/// The frame now as a pose; then `dt` seconds pass.
+pub fn pose(emotion: &HostEmotion, rig: &DeviceRig, state: &mut HostState, dt: f32) -> Pose<MAX_JOINTS> {
+    let (mut frame, mut pose) = (HostFrame::new(), rig.rest());
+    emotion.step(state, dt, &mut frame);
+    rig.show(&frame, &frame, &mut Drift::new(), &mut pose);
+    pose
+}
+
 /// Plays from the origin, facing +Z.
-pub fn play(pack: &Pack, settings: &Settings) -> Result<Played, LoadError> {
-    let emotion = HostEmotion::load(pack)?;
-    let mut state = Box::new(EmotionState::<MAX_JOINTS, MAX_KEYS>::new());
+pub fn play(pack: &Pack, settings: &Settings) -> Result<Played, RigError> {
+    let (emotion, rig) = (HostEmotion::load(pack)?, Rig::from_pack(pack)?);
+    let mut state = Box::new(HostState::new());
     state.strength = settings.from;
     emotion.change(&mut state);
     let first = (state.playing().unwrap_or_default(), state.seconds());
@@ -55,19 +67,16 @@ pub fn play(pack: &Pack, settings: &Settings) -> Result<Played, LoadError> {
         for ((now, from), to) in state.strength.iter_mut().zip(settings.from).zip(settings.to) {
             *now = from + part * (to - from);
         }
-        let mut pose = Pose::identity();
-        emotion.step(&mut state, (1.0 / settings.fps) as f32, &mut pose);
-        poses.push(pose);
+        poses.push(pose(&emotion, &rig.frames(), &mut state, (1.0 / settings.fps) as f32));
     }
     let strength = [first.0, state.playing().unwrap_or_default()];
     Ok(Played { poses, strength, round: [first.1, state.seconds()] })
 }
 
-/// What the ranking functions say of the keyframes at these strengths, held inside the pack's range.
-pub fn score(pack: &Pack, strengths: &Strengths) -> Result<Strengths, LoadError> {
-    let emotion = HostEmotion::load(pack)?;
-    let meta = emotion.meta();
-    let mut motion = vec![0.0; meta.keyframes as usize * meta.components as usize];
-    emotion.motion(strengths, &mut motion);
-    Ok(emotion.score(&motion))
+/// How long the motion, or a round of a cycle, takes at strengths, s.
+pub fn seconds(emotion: &HostEmotion, strength: &Strengths) -> f32 {
+    let mut state = Box::new(HostState::new());
+    state.strength = *strength;
+    emotion.change(&mut state);
+    state.seconds()
 }

@@ -2,13 +2,15 @@
 
 use rayon::prelude::*;
 
+use super::coordinates::{self, at_frames, levers, of_poses};
 use super::features::Projection;
 use super::keyframes::{Curve, Keyframes};
-use super::model::{Attribute, EmotionModel};
+use super::model::{Attribute, EmotionModel, Reading};
 use super::motions::{Example, Motion, features, motions, pairs, takes};
-use super::regress::{RegressOptions, regress};
 use super::segment::{Cut, FRAME_RATE, Segment};
-use super::{MAX_KEYS, MAX_WIDTH, RankOptions, Samples, choose_cost, rank};
+use super::{MAX_KEYS, MAX_WIDTH};
+use crate::learn::samples::add_scaled;
+use crate::learn::{RankOptions, RegressOptions, Samples, choose_cost, rank, regress};
 use crate::rig::Rig;
 use crate::vector::line;
 use kinesic::model::ATTRIBUTES;
@@ -99,13 +101,15 @@ pub enum TrainError {
 pub struct Trained {
     /// The model.
     pub model: EmotionModel,
+    /// The rig of its pack: coordinates about the mean of the motions.
+    pub rig: Rig,
     /// How clips were cut.
     pub cut: Cut,
     /// Motions of each example.
     pub motions: Vec<usize>,
     /// Root mean square distance of a joint from the spline through the keyframes, m.
     pub keyframe_error: f64,
-    /// Share of the variance that the components hold.
+    /// Share of the variance of coordinates and velocities, times levers, that the components hold.
     pub explained: f64,
     /// Cost and held-out pair accuracy of each ranking function.
     pub rankings: Vec<Ranking>,
@@ -165,10 +169,9 @@ pub fn train(
     for (example, _) in examples.iter().zip(&counts).filter(|(_, count)| **count == 0) {
         notes.push(format!("{}: no whole stride of {} frames, left out", example.name, options.keyframes));
     }
-    let width = 6 * rig.joints();
-    let projection = Projection::learn(&Samples::new(&rows, width), options.components);
-    let coordinates = projection.coordinates(&rows);
-    let samples = Samples::new(&coordinates, options.keyframes * projection.count());
+    let projection = Projection::learn(&Samples::new(&rows, 6 * rig.joints()), options.components);
+    let projected = projection.coordinates(&rows);
+    let samples = Samples::new(&projected, options.keyframes * projection.count());
     let found: Vec<(Ranking, Scale)> = (0..attributes.len())
         .into_par_iter()
         .map(|attribute| ranking(&samples, &motions, attribute, &attributes[attribute]))
@@ -176,11 +179,16 @@ pub fn train(
     let (rankings, scales): (Vec<Ranking>, Vec<Scale>) = found.into_iter().unzip();
     let strengths: Vec<f64> = samples.iter().flat_map(|row| scales.iter().map(|scale| scale.strength(row))).collect();
     let inputs = Samples::new(&strengths, attributes.len());
+
+    let material = Material::new(rig, &motions, &keyframes);
+    let made = Projection::learn(&Samples::new(&material.rows, 2 * material.levers.len()), options.components);
+    let targets = made.coordinates(&material.rows);
     let settings = RegressOptions { hidden: options.hidden, seed: options.seed, ..RegressOptions::default() };
-    let regressed = regress(&inputs, &samples, &settings);
+    let network = regress(&inputs, &Samples::new(&targets, options.keyframes * made.count()), &settings).network;
 
     let columns = |attribute: usize| inputs.iter().map(move |row| row[attribute]).collect::<Vec<f64>>();
     let plain = |values: Vec<f64>| quantiles(values).map(|x| x as f32);
+    let back = material.back(made.scale);
     let model = EmotionModel {
         motion: motion.to_owned(),
         frame_rate: FRAME_RATE as f32,
@@ -192,26 +200,28 @@ pub fn train(
         keyframes: options.keyframes,
         cycle: cut == Cut::Cycles,
         duration: durations(&motions, &keyframes),
-        // Row-major [6 joints x D]: a component a column.
-        basis: (0..width)
-            .flat_map(|c| {
-                let unscale = if c < width / 2 { 1.0 } else { projection.scale };
-                projection.components.chunks_exact(width).map(move |component| component[c] * unscale)
+        // Row-major [2 channels x D]: a component a column.
+        basis: (back.iter().enumerate())
+            .flat_map(|(c, back)| {
+                made.components.chunks_exact(made.mean.len()).map(move |component| component[c] * back)
             })
             .collect(),
-        mean: projection.mean.clone(),
-        rank: scales.iter().flat_map(|scale| scale.weights.iter().copied()).collect(),
-        rank_bias: scales.iter().map(|scale| scale.bias).collect(),
-        reference: keyframes.rotations.iter().map(|q| q.coords.map(|x| x as f32).into()).collect(),
-        parts: keyframes.parts.clone(),
-        velocity_scale: projection.scale,
-        network: regressed.network,
+        mean: made.mean.iter().zip(material.back(1.0)).map(|(mean, back)| mean * back).collect(),
+        reading: Reading {
+            parts: keyframes.parts.clone(),
+            postures: keyframes.postures.clone(),
+            rank: scales.iter().flat_map(|scale| scale.of_features(&projection).0).collect(),
+            bias: scales.iter().map(|scale| scale.of_features(&projection).1).collect(),
+        },
+        levers: material.levers.clone(),
+        network,
     };
     Ok(Trained {
         keyframe_error: keyframe_error(&motions, &keyframes),
-        network_error: network_error(&model, &projection, &inputs, &rows),
-        explained: projection.explained,
+        network_error: material.error(&made, &model, &inputs),
+        explained: made.explained,
         motions: counts,
+        rig: material.rig,
         cut,
         rankings,
         notes,
@@ -245,6 +255,76 @@ struct Scale {
 impl Scale {
     fn strength(&self, coordinates: &[f64]) -> f64 {
         self.bias + crate::vector::dot(&self.weights, coordinates)
+    }
+
+    /// The same function of the features themselves: weights and constant.
+    fn of_features(&self, projection: &Projection) -> (Vec<f64>, f64) {
+        let (width, half) = (projection.mean.len(), projection.mean.len() / 2);
+        let (mut weights, mut bias) = (Vec::new(), self.bias);
+        for row in self.weights.chunks_exact(projection.count()) {
+            let mut key = vec![0.0; width];
+            for (w, component) in row.iter().zip(projection.components.chunks_exact(width)) {
+                add_scaled(&mut key, *w, component);
+            }
+            key[half..].iter_mut().for_each(|w| *w /= projection.scale);
+            bias -= crate::vector::dot(&key, &projection.mean);
+            weights.extend(key);
+        }
+        (weights, bias)
+    }
+}
+
+/// What the network learns to make: coordinates of the motions on a rig about their mean.
+struct Material {
+    rig: Rig,
+    levers: Vec<f64>,
+    /// `[motions x (keyframes x 2 channels)]`: see [`at_frames`].
+    rows: Vec<f64>,
+}
+
+impl Material {
+    fn new(rig: &Rig, motions: &[Motion], keyframes: &Keyframes) -> Self {
+        let poses = |Motion { example, segment }: &Motion| {
+            rig.poses(&example.clip.slice(segment.start..segment.start + segment.frames()))
+        };
+        let poses: Vec<_> = motions.par_iter().map(poses).collect();
+        let rig = rig.centred(&poses.iter().map(Vec::as_slice).collect::<Vec<_>>());
+        let levers = levers(&rig);
+        let row = |(motion, poses): (&Motion, &Vec<_>)| {
+            let frames = keyframes.find(&motion.segment).unwrap_or_default();
+            at_frames(&of_poses(&rig, poses), &levers, &frames, motion.segment.frame_time)
+        };
+        let rows = motions.par_iter().zip(&poses).flat_map_iter(row).collect();
+        Self { rows, levers, rig }
+    }
+
+    /// What makes keyframes of scaled ones: by levers, of velocities by their scale.
+    fn back(&self, scale: f64) -> Vec<f64> {
+        let velocities = self.levers.iter().map(|_| scale);
+        self.levers.iter().map(|lever| 1.0 / lever).chain(velocities).collect()
+    }
+
+    /// Root mean square distance of a joint at a keyframe between the network's motion and the motions, m.
+    fn error(&self, projection: &Projection, model: &EmotionModel, inputs: &Samples) -> f64 {
+        let channels = self.levers.len();
+        let positions = |keyframes: &[f64]| {
+            let keys = keyframes.chunks_exact(2 * channels);
+            let rows: Vec<f64> =
+                keys.flat_map(|key| key.iter().zip(&self.levers).map(|(x, lever)| x / lever)).collect();
+            coordinates::positions(&self.rig, &rows)
+        };
+        let motions = self.rows.chunks_exact(model.keyframes * 2 * channels);
+        let all: Vec<[f64; 2]> = inputs
+            .iter()
+            .zip(motions)
+            .map(|(strength, real)| {
+                let (made, real) = (positions(&projection.features(&model.network.apply(strength))), positions(real));
+                let squares = made.iter().zip(&real).map(|(a, b)| (a - b) * (a - b)).sum();
+                [squares, (real.len() / 3) as f64]
+            })
+            .collect();
+        let sum = |of: usize| all.iter().map(|x| x[of]).sum::<f64>();
+        (sum(0) / sum(1).max(1.0)).sqrt()
     }
 }
 
@@ -304,17 +384,4 @@ fn keyframe_error(motions: &[Motion], keyframes: &Keyframes) -> f64 {
         .filter_map(|motion| Some(Curve::of(&motion.segment).error(&keyframes.find(&motion.segment)?).powi(2)))
         .collect();
     (errors.iter().sum::<f64>() / errors.len().max(1) as f64).sqrt()
-}
-
-fn network_error(model: &EmotionModel, projection: &Projection, inputs: &Samples, rows: &[f64]) -> f64 {
-    let width = projection.mean.len();
-    let (mut squares, mut count) = (0.0, 0.0);
-    for (strength, motion) in inputs.iter().zip(rows.chunks_exact(model.keyframes * width)) {
-        let made = projection.features(&model.network.apply(strength));
-        for (made, real) in made.chunks_exact(width).zip(motion.chunks_exact(width)) {
-            squares += made.iter().zip(real).take(width / 2).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
-            count += (width / 6) as f64;
-        }
-    }
-    (squares / f64::max(count, 1.0)).sqrt()
 }

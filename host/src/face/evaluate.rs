@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::landmarks::Face;
 use super::model::{HostFace, MAX_UNITS};
-use crate::emotion::spearman;
+use crate::learn::spearman;
 
 /// A face and what the device reads from it.
 #[derive(Clone, Debug)]
@@ -121,7 +121,7 @@ pub fn pair_accuracy(labels: &[f64], scores: &[f64]) -> (u64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::emotion::Pairs;
+    use crate::learn::Pairs;
 
     #[test]
     fn counted_pairs_are_those_that_a_list_holds() {
@@ -131,7 +131,7 @@ mod tests {
         let list = Pairs::of_levels(&levels, &[0; 40], 0.0).ordered;
         let (pairs, right) = pair_accuracy(&labels, &scores);
         assert_eq!(pairs, list.len() as u64);
-        assert!((right / pairs as f64 - crate::emotion::pair_accuracy(&scores, &list)).abs() < 1e-12);
+        assert!((right / pairs as f64 - crate::learn::pair_accuracy(&scores, &list)).abs() < 1e-12);
     }
 
     #[test]

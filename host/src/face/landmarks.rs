@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use kinesic::face::{FaceFrame, Landmarks, POINTS};
 
 /// Names under which tables hold the picture's file name, and the person's.
-const PICTURE: [&str; 3] = ["image", "image_id", "file"];
+const PICTURE: [&str; 6] = ["image", "image_id", "file", "filename", "image_path", "frame"];
 const PERSON: [&str; 2] = ["subject", "person"];
 
 /// A face of a table.
@@ -51,7 +51,7 @@ pub enum LandmarksFault {
          (0-16 contour, 17-26 brows, 27-35 nose, 36-47 eyes, 48-67 mouth)"
     )]
     MissingColumn { column: String },
-    #[error("line 1: no column names the picture: expected one of image, image_id, file")]
+    #[error("line 1: no column names the picture: expected one of image, image_id, file, filename, image_path, frame")]
     NoPicture,
     #[error(
         "line 1: no column '{attribute}' (nor 'posed_{attribute}' or '{attribute}_true'). Columns beside the landmarks: {found}"
@@ -66,6 +66,16 @@ pub enum LandmarksFault {
     #[error("line {line}: the landmarks are in one place, or the eyes are: this is no face. Remove the line")]
     Degenerate { line: u64 },
     #[error(
+        "line {line}: {count} landmarks are at {at}, which is what detectors write for those they did not find: {list}. Detect the face \
+         again, or remove the line"
+    )]
+    NotFound { line: u64, count: usize, at: String, list: String },
+    #[error(
+        "line {line}: all landmarks lie within {size:.2} pixels: they look like shares of the picture from 0 to 1. Multiply x by its \
+         width and y by its height"
+    )]
+    Normalised { line: u64, size: f32 },
+    #[error(
         "line {line}: the brows are below the mouth: expected y to point down in the picture, and landmarks 36-41 to be the \
          right eye of the person, on the left in the picture. Turn y round (height - y), or mirror the numbering"
     )]
@@ -77,7 +87,7 @@ pub enum LandmarksFault {
 /// `smile` is looked for as `smile`, then as `posed_smile`, then as `smile_true`; an empty cell is a face that nobody judged.
 pub fn read(path: &Path, attribute: Option<&str>) -> Result<Vec<Face>, LandmarksError> {
     let refuse = |fault| LandmarksError { path: path.to_owned(), fault };
-    let bytes = std::fs::read(path).map_err(|error| refuse(LandmarksFault::Io { error: error.to_string() }))?;
+    let bytes = crate::files::read(path).map_err(|error| refuse(LandmarksFault::Io { error: error.to_string() }))?;
     parse(&bytes, attribute).map_err(refuse)
 }
 
@@ -115,8 +125,12 @@ struct Columns {
 impl Columns {
     fn find(header: &csv::StringRecord, attribute: Option<&str>) -> Result<Self, LandmarksFault> {
         let find = |name: &str| header.iter().position(|h| h.eq_ignore_ascii_case(name));
-        let point = |column: String| find(&column).ok_or(LandmarksFault::MissingColumn { column });
-        let points = (0..POINTS).map(|i| Ok([point(format!("x{i}"))?, point(format!("y{i}"))?]));
+        // OpenFace writes x_0, other tools X0.
+        let point = |axis: &str, i: usize| {
+            let column = format!("{axis}{i}");
+            find(&column).or_else(|| find(&format!("{axis}_{i}"))).ok_or(LandmarksFault::MissingColumn { column })
+        };
+        let points = (0..POINTS).map(|i| Ok([point("x", i)?, point("y", i)?]));
         let points = points.collect::<Result<Vec<_>, _>>()?;
         let named = |attribute: &str| {
             let names = [attribute.to_owned(), format!("posed_{attribute}"), format!("{attribute}_true")];
@@ -147,6 +161,7 @@ impl Columns {
         for (point, at) in landmarks.iter_mut().zip(&self.points) {
             *point = [number(at[0])? as f32, number(at[1])? as f32];
         }
+        missing(&landmarks, line)?;
         let frame = FaceFrame::of(&landmarks).ok_or(LandmarksFault::Degenerate { line })?;
         let shape = frame.shape(&landmarks);
         let height = |points: &[[f32; 2]]| points.iter().map(|p| p[1]).sum::<f32>() / points.len() as f32;
@@ -162,4 +177,20 @@ impl Columns {
             line,
         })
     }
+}
+
+/// Refuses landmarks that were not found, or that are no pixels.
+fn missing(landmarks: &Landmarks, line: u64) -> Result<(), LandmarksFault> {
+    for place in [-1.0, 0.0] {
+        let lost: Vec<String> =
+            landmarks.iter().enumerate().filter(|(_, p)| **p == [place; 2]).map(|(i, _)| i.to_string()).collect();
+        // One landmark may lie in the corner; all in one place are no face, which is said elsewhere.
+        if lost.len() > usize::from(place == 0.0) && lost.len() < POINTS {
+            let at = format!("{place},{place}");
+            return Err(LandmarksFault::NotFound { line, count: lost.len(), at, list: lost.join(" ") });
+        }
+    }
+    let size = landmarks.as_flattened().iter().map(|x| x.abs()).fold(0.0, f32::max);
+    let spread = landmarks.iter().any(|p| p != &landmarks[0]);
+    if spread && size <= 2.0 { Err(LandmarksFault::Normalised { line, size }) } else { Ok(()) }
 }

@@ -9,6 +9,7 @@
 //! | [`train()`], `model` | from a table to a pack |
 //! | `made` | faces for tests and the firmware workload |
 //! | `evaluate` | reads every face through the device's code; pair accuracy, rank correlation |
+//! | [`photo`] | pictures from files, whole or refused |
 //! | [`edit()`], `warp/` | offsets for a change of strength; moves the landmarks of a picture |
 
 mod cluster;
@@ -17,6 +18,7 @@ mod evaluate;
 pub mod landmarks;
 pub mod made;
 mod model;
+pub mod photo;
 mod shape;
 mod strength;
 mod train;

@@ -9,7 +9,7 @@ use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
 
 use super::shape::region_local;
-use crate::emotion::{Pairs, RankOptions, Samples, choose_cost, rank};
+use crate::learn::{Pairs, RankOptions, Samples, choose_cost, rank};
 use crate::vector::{dot, line};
 
 /// Pairs that a function is fitted on at most, drawn from all: more change nothing that the faces can tell.

@@ -13,7 +13,7 @@ use super::landmarks::Face;
 use super::model::{ClusterModel, FaceModel, MAX_UNITS};
 use super::shape::numbers;
 use super::strength::{Labelled, Scorer, Standard, common, of_cluster};
-use crate::emotion::{RegressOptions, Regressed, Samples, regress};
+use crate::learn::{RegressOptions, Regressed, Samples, regress};
 
 /// Faces that a cluster needs in each half of the labels' range; one with fewer is joined to its neighbours.
 const NEEDED: usize = 10;

@@ -1,78 +1,106 @@
 //! The limits of one joint.
 
-use kinesic::limit::{JointKind, LimitTable};
+use kinesic::rig::JointKind;
 
-const UPRIGHT: [[f32; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+use crate::rig::JointCoordinates;
 
-/// One row of a [`LimitTable`]; its fields say what they mean.
+/// Bound of the components of a free joint's rotation vector, rad: no rotation vector reaches it.
+const FREE: f32 = 4.0;
+
+/// What one joint may do. Lists have one entry per coordinate; entries past the joint's coordinates are 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointLimit {
     /// Which coordinates the joint has.
-    pub kind: JointKind,
-    /// Axes in the frame of `neutral`.
-    pub axes: [[f32; 3]; 3],
-    /// Local rotation `[i, j, k, w]` where the coordinates are zero.
-    pub neutral: [f32; 4],
-    /// Least coordinates, rad.
+    pub coordinates: JointCoordinates,
+    /// Least coordinates, rad or m.
     pub lower: [f32; 3],
-    /// Greatest coordinates, rad.
+    /// Greatest coordinates, rad or m.
     pub upper: [f32; 3],
-    /// Largest speeds, rad/s.
+    /// Largest speeds, rad/s or m/s.
     pub velocity: [f32; 3],
-    /// Largest accelerations, rad/s^2.
+    /// Largest accelerations, rad/s^2 or m/s^2.
     pub acceleration: [f32; 3],
-    /// Coordinates at rest, rad.
+    /// Coordinates at rest, rad or m.
     pub rest: [f32; 3],
 }
 
 impl JointLimit {
-    /// No position limits; rates of the whole angular velocity.
+    /// A ball without position limits; the rates hold for each component of its rotation vector.
     pub fn free(velocity: f32, acceleration: f32) -> Self {
         Self {
-            kind: JointKind::Free,
-            axes: UPRIGHT,
-            neutral: [0.0, 0.0, 0.0, 1.0],
-            lower: [0.0; 3],
-            upper: [0.0; 3],
+            coordinates: JointCoordinates::new(JointKind::Ball),
+            lower: [-FREE; 3],
+            upper: [FREE; 3],
             velocity: [velocity; 3],
             acceleration: [acceleration; 3],
             rest: [0.0; 3],
         }
     }
 
+    /// A joint without coordinates.
+    pub fn fixed() -> Self {
+        Self { coordinates: JointCoordinates::new(JointKind::Fixed), ..Self::free(0.0, 0.0) }.within([0.0; 3], [0.0; 3])
+    }
+
     /// One servo about `axis` (length one); it rests at zero, or at the bound nearest to it.
     pub fn hinge(axis: [f32; 3], [lower, upper]: [f32; 2], velocity: f32, acceleration: f32) -> Self {
-        Self { kind: JointKind::Hinge, axes: [axis, [0.0; 3], [0.0; 3]], ..Self::free(velocity, acceleration) }
-            .within([lower, 0.0, 0.0], [upper, 0.0, 0.0])
+        let coordinates =
+            JointCoordinates { axes: [axis, [0.0; 3], [0.0; 3]], ..JointCoordinates::new(JointKind::Hinge) };
+        Self { coordinates, ..Self::free(velocity, acceleration) }.within([lower, 0.0, 0.0], [upper, 0.0, 0.0])
     }
 
     /// Three servos in order, at right angles.
     pub fn chain(axes: [[f32; 3]; 3], lower: [f32; 3], upper: [f32; 3], velocity: f32, acceleration: f32) -> Self {
-        Self { kind: JointKind::Chain, axes, ..Self::free(velocity, acceleration) }.within(lower, upper)
+        let coordinates = JointCoordinates { axes, ..JointCoordinates::new(JointKind::Chain) };
+        Self { coordinates, ..Self::free(velocity, acceleration) }.within(lower, upper)
     }
 
-    /// Twist about the first axis, swing about the other two.
-    pub fn ball(axes: [[f32; 3]; 3], lower: [f32; 3], upper: [f32; 3], velocity: f32, acceleration: f32) -> Self {
-        Self { kind: JointKind::Ball, axes, ..Self::free(velocity, acceleration) }.within(lower, upper)
+    /// A box of rotation vectors about the reference, along the joint's own axes.
+    pub fn ball(lower: [f32; 3], upper: [f32; 3], velocity: f32, acceleration: f32) -> Self {
+        Self::free(velocity, acceleration).within(lower, upper)
     }
 
-    /// The same joint with these position limits, at rest at zero or at the bound nearest to it.
-    pub fn within(self, lower: [f32; 3], upper: [f32; 3]) -> Self {
-        Self { lower, upper, rest: std::array::from_fn(|axis| 0.0f32.max(lower[axis]).min(upper[axis])), ..self }
+    /// The same joint with these position limits, at rest at zero or at the bound nearest to it. Angles of hinges and chains are
+    /// counted from the middle of their range. What the joint does not have becomes 0.
+    pub fn within(mut self, lower: [f32; 3], upper: [f32; 3]) -> Self {
+        if matches!(self.coordinates.kind, JointKind::Hinge | JointKind::Chain) {
+            self.coordinates.middle = std::array::from_fn(|axis| 0.5 * (lower[axis] + upper[axis]));
+        }
+        let count = self.count();
+        let own = |values: [f32; 3]| std::array::from_fn(|axis| if axis < count { values[axis] } else { 0.0 });
+        Self {
+            lower: own(lower),
+            upper: own(upper),
+            velocity: own(self.velocity),
+            acceleration: own(self.acceleration),
+            rest: own(std::array::from_fn(|axis| 0.0f32.max(lower[axis]).min(upper[axis]))),
+            ..self
+        }
+    }
+
+    /// True for a ball whose bounds no rotation reaches.
+    pub fn is_free(&self) -> bool {
+        let wide = self.lower.iter().all(|x| *x <= -FREE) && self.upper.iter().all(|x| *x >= FREE);
+        self.coordinates.kind == JointKind::Ball && wide
+    }
+
+    /// Number of coordinates.
+    pub fn count(&self) -> usize {
+        self.coordinates.kind.coordinates()
     }
 }
 
-/// The rows of a table.
-pub(super) fn rows(table: &LimitTable) -> Vec<JointLimit> {
-    let row = |joint: usize| JointLimit {
-        kind: JointKind::from_code(table.kinds[joint]).unwrap_or(JointKind::Free),
-        axes: table.axes[joint],
-        neutral: table.neutral[joint],
-        lower: table.lower[joint],
-        upper: table.upper[joint],
-        velocity: table.velocity[joint],
-        acceleration: table.acceleration[joint],
-        rest: table.rest[joint],
-    };
-    (0..table.kinds.len()).map(row).collect()
+/// What the height of a travelling root may do, m, m/s, m/s^2.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeightLimit {
+    /// Least height.
+    pub lower: f32,
+    /// Greatest height.
+    pub upper: f32,
+    /// Largest speed.
+    pub velocity: f32,
+    /// Largest acceleration.
+    pub acceleration: f32,
+    /// Height at rest.
+    pub rest: f32,
 }

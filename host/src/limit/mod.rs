@@ -1,20 +1,32 @@
 //! Joint limits: how they go into a pack, and where they come from. The device side, and what the tables mean, is [`kinesic::limit`].
+//!
+//! | file | holds |
+//! |---|---|
+//! | `joint` | [`JointLimit`]: the limits of one joint |
+//! | `rows` | [`Tables`]: the limits of every coordinate, as the device reads them |
+//! | `onto` | limits in the coordinates of a pack that has engines |
+//! | `table` | [`Table`]: for people and other programs |
+//! | `robot` | limits from a robot's URDF |
 
 mod joint;
+mod onto;
 pub mod robot;
+mod rows;
 mod table;
 
-pub use joint::JointLimit;
-pub use table::{Entry, Table};
+pub use joint::{HeightLimit, JointLimit};
+pub use onto::Mismatch;
+pub use rows::Tables;
+pub use table::{Entry, Height, Table};
 
-use kinesic::limit::{LimitTable, Limiter};
+use kinesic::limit::Limiter;
 use kinesic::model::{Kind, LimitsMeta, LoadError, ModelMeta, Pack};
 
 use crate::pack::{PackWriter, Provenance};
-use crate::rig::{MAX_JOINTS, Rig};
+use crate::rig::{JointCoordinates, MAX_ROWS, Rig, RigError};
 
 /// The limiter as the host steps it.
-pub type HostLimiter<'a> = Limiter<'a, MAX_JOINTS>;
+pub type HostLimiter<'a> = Limiter<'a, MAX_ROWS>;
 
 /// Limits of every joint of a rig, in its order.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,120 +37,102 @@ pub struct LimitsModel {
     pub frame_rate: f64,
     /// Rates of the root, and what happens when frames fail to come.
     pub meta: LimitsMeta,
-    /// One entry a joint.
+    /// Height of the root; it counts for a rig that travels.
+    pub height: HeightLimit,
+    /// One entry per joint.
     pub joints: Vec<JointLimit>,
 }
 
 impl LimitsModel {
-    /// Everything free, at the given rates (rad/s, rad/s^2): a table to start from.
-    pub fn free(name: &str, frame_rate: f64, joints: usize, velocity: f32, acceleration: f32) -> Self {
-        let joints = vec![JointLimit::free(velocity, acceleration); joints];
-        Self { name: name.to_owned(), frame_rate, meta: LimitsMeta::default(), joints }
+    /// Every joint of `rig` free, at the given rates (rad/s, rad/s^2): a table to start from. Its balls keep their references. The
+    /// root's height is [`standing`](Self::standing).
+    pub fn free(name: &str, frame_rate: f64, rig: &Rig, velocity: f32, acceleration: f32) -> Self {
+        let free = JointLimit::free(velocity, acceleration);
+        let joint = |own: JointCoordinates| JointLimit {
+            coordinates: JointCoordinates { kind: free.coordinates.kind, ..own },
+            ..free
+        };
+        let joints = rig.joint_coordinates().into_iter().map(joint).collect();
+        let meta = LimitsMeta::default();
+        Self { name: name.to_owned(), frame_rate, meta, height: Self::standing(rig, &meta), joints }
     }
 
-    /// The same checks as on the device, before anything is written.
-    pub fn check(&self) -> Result<(), LoadError> {
-        let tables = self.tables();
-        Limiter::<MAX_JOINTS>::new(tables.view(), self.meta, self.frame_rate as f32).map(|_| ())
+    /// From the ground to twice the height at which the skeleton stands, at the root's rates; at rest it stands.
+    pub fn standing(rig: &Rig, meta: &LimitsMeta) -> HeightLimit {
+        let rest = rig.skeleton.rest_positions();
+        let lowest = rest.iter().map(|joint| joint.y).fold(f64::INFINITY, f64::min);
+        let height = (rest.first().map_or(0.0, |root| root.y) - lowest).clamp(0.0, 50.0) as f32;
+        HeightLimit {
+            lower: 0.0,
+            upper: 2.0 * height,
+            velocity: meta.root_velocity,
+            acceleration: meta.root_acceleration,
+            rest: height,
+        }
+    }
+
+    /// The coordinates of every joint.
+    pub fn coordinates(&self) -> Vec<JointCoordinates> {
+        self.joints.iter().map(|joint| joint.coordinates).collect()
+    }
+
+    /// The rig with the coordinates that are limited.
+    pub fn rig(&self, rig: &Rig) -> Result<Rig, LoadError> {
+        let (found, expected) = (self.joints.len(), rig.joints());
+        if found != expected {
+            return Err(LoadError::Shape { tensor: "limits", found, expected });
+        }
+        rig.with_coordinates(self.coordinates())
+    }
+
+    /// The tables as the device reads them, for a limiter without a pack.
+    pub fn tables(&self, rig: &Rig) -> Result<Tables, LoadError> {
+        Tables::new(self, self.rig(rig)?)
     }
 
     /// See [`Limiter::recovery_frames`].
-    pub fn recovery_frames(&self) -> Result<u32, LoadError> {
-        let tables = self.tables();
-        Ok(HostLimiter::new(tables.view(), self.meta, self.frame_rate as f32)?.recovery_frames())
+    pub fn recovery_frames(&self, rig: &Rig) -> Result<u32, LoadError> {
+        Ok(self.tables(rig)?.limiter::<MAX_ROWS>()?.recovery_frames())
     }
 
     /// The tables of a pack of this or another kind.
-    pub fn from_pack(pack: &Pack) -> Result<Self, LoadError> {
+    pub fn from_pack(pack: &Pack) -> Result<Self, RigError> {
         let limiter = HostLimiter::load(pack)?;
+        let rig = Rig::from_pack(pack)?;
+        let (height, joints) = rows::joints(limiter.table(), &rig);
         Ok(Self {
             name: pack.metadata().name.to_owned(),
             frame_rate: f64::from(pack.metadata().frame_rate),
             meta: *limiter.meta(),
-            joints: joint::rows(limiter.table()),
+            height: height.unwrap_or_else(|| Self::standing(&rig, limiter.meta())),
+            joints,
         })
     }
 
-    /// Adds the model and its tensors to a pack whose joints are these, in this order.
-    pub fn write(&self, pack: &mut PackWriter) {
-        let Tables { kinds, axes, neutral, lower, upper, velocity, acceleration, rest } = self.tables();
-        pack.model(&ModelMeta::Limits(self.meta));
-        pack.u16s("limit/kinds", 1, &kinds);
-        pack.f32s("limit/axes", 9, axes.as_flattened().as_flattened());
-        pack.f32s("limit/neutral", 4, neutral.as_flattened());
-        for (name, values) in [
-            ("limit/lower", lower),
-            ("limit/upper", upper),
-            ("limit/velocity", velocity),
-            ("limit/acceleration", acceleration),
-            ("limit/rest", rest),
-        ] {
-            pack.f32s(name, 3, values.as_flattened());
-        }
-    }
-
-    /// A pack of these limits alone, for `rig`.
-    pub fn pack(&self, rig: &Rig, provenance: &Provenance) -> Vec<u8> {
+    /// A pack of these limits alone: its rig is `rig` with the coordinates that are limited.
+    pub fn pack(&self, rig: &Rig, provenance: &Provenance) -> Result<Vec<u8>, LoadError> {
+        let tables = self.tables(rig)?;
         let mut pack = PackWriter::new(Kind::Limits, &self.name, self.frame_rate as f32);
-        rig.write(&mut pack);
-        self.write(&mut pack);
-        pack.finish(provenance)
+        tables.rig().write(&mut pack);
+        self.write(&tables, &mut pack);
+        Ok(pack.finish(provenance))
     }
 
-    /// A style pack: everything that `base` holds, and these limits instead of its own if it has some. Its joints must be these.
+    /// A style pack: everything that `base` holds, and these limits instead of its own if it has some. `rig` is that of `base`, and
+    /// these limits are in its coordinates: see [`onto`](Self::onto).
     pub fn pack_with(&self, base: &Pack, rig: &Rig, provenance: &Provenance) -> Result<Vec<u8>, LoadError> {
+        let tables = Tables::new(self, rig.clone())?;
         let metadata = base.metadata();
         let mut pack = PackWriter::new(Kind::Style, metadata.name, metadata.frame_rate);
         rig.write(&mut pack);
         pack.copy_models(base)?;
-        self.write(&mut pack);
+        self.write(&tables, &mut pack);
         Ok(pack.finish(provenance))
     }
 
-    /// The tables as the device reads them, for a limiter without a pack.
-    pub fn tables(&self) -> Tables {
-        let mut tables = Tables::default();
-        for joint in &self.joints {
-            tables.kinds.push(joint.kind as u16);
-            tables.axes.push(joint.axes);
-            tables.neutral.push(joint.neutral);
-            tables.lower.push(joint.lower);
-            tables.upper.push(joint.upper);
-            tables.velocity.push(joint.velocity);
-            tables.acceleration.push(joint.acceleration);
-            tables.rest.push(joint.rest);
-        }
-        tables
-    }
-}
-
-/// Owned columns of a [`LimitTable`].
-#[derive(Clone, Debug, Default, PartialEq)]
-#[expect(missing_docs, reason = "the fields of `LimitTable`, which says what they are")]
-pub struct Tables {
-    pub kinds: Vec<u16>,
-    pub axes: Vec<[[f32; 3]; 3]>,
-    pub neutral: Vec<[f32; 4]>,
-    pub lower: Vec<[f32; 3]>,
-    pub upper: Vec<[f32; 3]>,
-    pub velocity: Vec<[f32; 3]>,
-    pub acceleration: Vec<[f32; 3]>,
-    pub rest: Vec<[f32; 3]>,
-}
-
-impl Tables {
-    /// The device's view.
-    pub fn view(&self) -> LimitTable<'_> {
-        LimitTable {
-            kinds: &self.kinds,
-            axes: &self.axes,
-            neutral: &self.neutral,
-            lower: &self.lower,
-            upper: &self.upper,
-            velocity: &self.velocity,
-            acceleration: &self.acceleration,
-            rest: &self.rest,
-        }
+    fn write(&self, tables: &Tables, pack: &mut PackWriter) {
+        pack.model(&ModelMeta::Limits(self.meta));
+        tables.write(pack);
     }
 }
 
@@ -147,26 +141,84 @@ mod tests {
     use super::*;
     use crate::gait;
     use crate::pack::PackFile;
-    use kinesic::limit::JointKind;
+
+    const X: [f32; 3] = [1.0, 0.0, 0.0];
+    const Y: [f32; 3] = [0.0, 1.0, 0.0];
+    const Z: [f32; 3] = [0.0, 0.0, 1.0];
+
+    fn rig() -> Rig {
+        let skeleton = gait::skeleton();
+        let map = crate::clip::JointMap::detect(&skeleton).unwrap();
+        Rig::new(&skeleton, &map).unwrap()
+    }
 
     #[test]
     fn a_pack_gives_the_table_back() {
-        let skeleton = gait::skeleton();
-        let map = crate::clip::JointMap::detect(&skeleton).unwrap();
-        let rig = Rig::new(&skeleton, &map).unwrap();
-        let mut model = LimitsModel::free("robot", 60.0, rig.joints(), 10.0, 100.0);
-        model.joints[2] = JointLimit::hinge([1.0, 0.0, 0.0], [-0.1, 2.4], 6.0, 60.0);
-        model.joints[3] =
-            JointLimit::ball([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]], [-0.5; 3], [0.5; 3], 6.0, 60.0);
-        model.check().unwrap();
-        let file = PackFile::from_bytes(&model.pack(&rig, &Provenance::default()));
+        let rig = rig();
+        let mut model = LimitsModel::free("robot", 60.0, &rig, 10.0, 100.0);
+        // Two hinges share a row, and a chain begins the next.
+        model.joints[2] = JointLimit::hinge(X, [-0.1, 2.4], 6.0, 60.0);
+        model.joints[3] = JointLimit::hinge(Z, [-0.2, 0.3], 5.0, 50.0);
+        model.joints[4] = JointLimit::chain([X, Y, Z], [-1.0, -0.5, 0.1], [0.5, 0.6, 0.7], 4.0, 40.0);
+        model.joints[5] = JointLimit::ball([-0.5; 3], [0.5; 3], 6.0, 60.0);
+        model.joints[6] = JointLimit::fixed();
+        let tables = model.tables(&rig).unwrap();
+        // Row 0 is the root's; joints 0 and 1 are balls.
+        assert_eq!(tables.view().upper[3], [2.4, 0.3, 0.0]);
+        assert_eq!(tables.view().lower[4], [-1.0, -0.5, 0.1]);
+        assert_eq!(tables.view().rest[4], [0.0, 0.0, 0.1]);
+        let file = PackFile::from_bytes(&model.pack(&rig, &Provenance::default()).unwrap());
         let pack = file.pack().unwrap();
         assert_eq!(pack.kind(), Kind::Limits);
         assert_eq!(LimitsModel::from_pack(&pack).unwrap(), model);
-        assert_eq!(HostLimiter::load(&pack).unwrap().joints(), rig.joints());
-        // What the device would refuse is refused here, with the joint.
-        model.joints[2].upper[0] = f32::NAN;
-        assert!(matches!(model.check(), Err(LoadError::Value { index: 2, .. })), "{:?}", model.check());
-        assert_eq!(model.joints[3].kind, JointKind::Ball);
+        assert!(model.joints[1].is_free() && !model.joints[5].is_free());
+        assert_eq!(HostLimiter::load(&pack).unwrap().rig().joints(), rig.joints());
+    }
+
+    #[test]
+    fn what_the_device_would_refuse_is_refused_here() {
+        let rig = rig();
+        let mut model = LimitsModel::free("robot", 60.0, &rig, 10.0, 100.0);
+        model.joints[2] = JointLimit::hinge(X, [-0.1, 2.4], 6.0, 60.0);
+        let refused = |model: &LimitsModel| model.recovery_frames(&rig).unwrap_err();
+        let mut broken = model.clone();
+        broken.joints[2].upper[0] = f32::NAN;
+        assert_eq!(refused(&broken), LoadError::Value { tensor: "limit/lower", index: 3 });
+        let mut broken = model.clone();
+        broken.joints[2].coordinates.axes[0] = [0.0; 3];
+        assert_eq!(refused(&broken), LoadError::Value { tensor: "rig/axes", index: 2 });
+        assert!(broken.pack(&rig, &Provenance::default()).is_err());
+        // The root of a body that travels is a ball.
+        let mut broken = model.clone();
+        broken.joints[0] = JointLimit::hinge(Y, [-1.0, 1.0], 6.0, 60.0);
+        assert_eq!(refused(&broken), LoadError::Value { tensor: "rig/kinds", index: 0 });
+        model.joints.pop();
+        assert!(matches!(refused(&model), LoadError::Shape { tensor: "limits", found: 18, expected: 19 }));
+    }
+
+    #[test]
+    fn engines_keep_their_coordinates() {
+        let plain = rig();
+        let mut model = LimitsModel::free("robot", 60.0, &plain, 10.0, 100.0);
+        model.joints[2] = JointLimit::hinge(X, [-0.1, 2.4], 6.0, 60.0);
+        // A pack whose style was learned on other coordinates.
+        let error = model.onto(&plain).unwrap_err().to_string();
+        assert!(["LeftLeg", "ball", "hinge about [1, 0, 0]"].iter().all(|word| error.contains(word)), "{error}");
+        // In the limits' own coordinates, but free joints about other references: these are taken over.
+        let mut joints = model.coordinates();
+        joints[9].reference = [0.0, 0.6, 0.0, 0.8];
+        joints[10] = JointCoordinates::new(kinesic::rig::JointKind::Fixed);
+        let learned = plain.with_coordinates(joints.clone()).unwrap();
+        let onto = model.onto(&learned).unwrap();
+        assert_eq!(onto.coordinates(), joints);
+        assert_eq!(onto.joints[2], model.joints[2]);
+        // A limited ball about another reference would be another box.
+        model.joints[9] = JointLimit::ball([-0.5; 3], [0.5; 3], 6.0, 60.0);
+        let error = model.onto(&learned).unwrap_err().to_string();
+        assert!(error.contains("[0, 0.6, 0, 0.8]") && error.contains("[0, 0, 0, 1]"), "{error}");
+        // So would a hinge with a limit on a joint that never moves.
+        model.joints[9] = JointLimit::free(10.0, 100.0);
+        model.joints[10] = JointLimit::hinge(X, [-0.1, 2.4], 6.0, 60.0);
+        assert!(model.onto(&learned).unwrap_err().to_string().contains("fixed"));
     }
 }

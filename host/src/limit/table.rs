@@ -1,10 +1,9 @@
 //! A table of limits for people and other programs: JSON, TOML, CSV.
 
-use kinesic::limit::JointKind;
 use serde::Serialize;
 
 use super::robot::kind_name;
-use super::{JointLimit, LimitsModel};
+use super::{HeightLimit, JointLimit, LimitsModel, onto};
 
 /// All limits by name.
 #[derive(Clone, Debug, Serialize)]
@@ -17,39 +16,54 @@ pub struct Table {
     pub root_velocity: f64,
     /// Largest acceleration of the root, m/s^2.
     pub root_acceleration: f64,
+    /// Largest speed of the heading, rad/s.
+    pub heading_velocity: f64,
+    /// Largest acceleration of the heading, rad/s^2.
+    pub heading_acceleration: f64,
+    /// Height of the root.
+    pub height: Height,
     /// Time for which the last sound frame is held, s.
     pub hold: f64,
     /// Time constant of the way to rest, s.
     pub decay: f64,
-    /// Time after which equal frames count as frozen, s; 0 for never.
-    pub frozen: f64,
-    /// One entry a joint.
+    /// One entry per joint.
     pub joints: Vec<Entry>,
 }
 
-/// One joint; lists have one entry a coordinate, of a free joint one.
+/// The root's height, m, m/s, m/s^2.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[expect(missing_docs, reason = "the fields of `HeightLimit`, which says what they are")]
+pub struct Height {
+    pub lower: f64,
+    pub upper: f64,
+    pub rest: f64,
+    pub velocity: f64,
+    pub acceleration: f64,
+}
+
+/// One joint; lists have one entry per coordinate. A free joint has one speed and one acceleration, for all three, and no bounds.
 #[derive(Clone, Debug, Serialize)]
 pub struct Entry {
     /// Name in the skeleton.
     pub joint: String,
-    /// free, hinge, chain or ball.
+    /// free, hinge, chain, ball, slider or fixed.
     pub kind: &'static str,
     /// Robot joints of the coordinates, where they are known.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub urdf: Vec<String>,
     /// Local rotation `[i, j, k, w]` at which the coordinates are zero.
-    pub neutral: Vec<f64>,
-    /// Axes, in the frame that `neutral` turns.
+    pub reference: Vec<f64>,
+    /// Axes of hinges, in the frame that `reference` turns.
     pub axes: Vec<[f64; 3]>,
-    /// Least coordinates, rad.
+    /// Least coordinates, rad or m.
     pub lower: Vec<f64>,
-    /// Greatest coordinates, rad.
+    /// Greatest coordinates, rad or m.
     pub upper: Vec<f64>,
-    /// Coordinates at rest, rad.
+    /// Coordinates at rest, rad or m.
     pub rest: Vec<f64>,
-    /// Largest speeds, rad/s.
+    /// Largest speeds, rad/s or m/s.
     pub velocity: Vec<f64>,
-    /// Largest accelerations, rad/s^2.
+    /// Largest accelerations, rad/s^2 or m/s^2.
     pub acceleration: Vec<f64>,
 }
 
@@ -63,31 +77,33 @@ impl Table {
             frame_rate: model.frame_rate,
             root_velocity: plain(meta.root_velocity),
             root_acceleration: plain(meta.root_acceleration),
+            heading_velocity: plain(meta.heading_velocity),
+            heading_acceleration: plain(meta.heading_acceleration),
+            height: height(&model.height),
             hold: plain(meta.hold),
             decay: plain(meta.decay),
-            frozen: plain(meta.frozen),
             joints: rows.map(|(at, (limit, name))| entry(limit, name, urdf.get(at).cloned())).collect(),
         }
     }
 
-    /// A line a coordinate.
+    /// A line per coordinate, of a free joint one.
     pub fn csv(&self) -> String {
         let mut text =
-            "joint,kind,coordinate,urdf,axis_x,axis_y,axis_z,neutral_i,neutral_j,neutral_k,neutral_w,lower,upper,rest,\
+            "joint,kind,coordinate,urdf,axis_x,axis_y,axis_z,reference_i,reference_j,reference_k,reference_w,lower,upper,rest,\
                         velocity,acceleration\n"
                 .to_owned();
         for joint in &self.joints {
             for (at, velocity) in joint.velocity.iter().enumerate() {
                 let cell = |list: &[f64]| list.get(at).map_or(String::new(), f64::to_string);
                 let axis = joint.axes.get(at).map_or(",,".to_owned(), |[x, y, z]| format!("{x},{y},{z}"));
-                let neutral = joint.neutral.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
+                let reference = joint.reference.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
                 text += &[
                     quoted(&joint.joint),
                     joint.kind.to_owned(),
                     at.to_string(),
                     quoted(joint.urdf.get(at).map_or("", |name| name)),
                     axis,
-                    neutral,
+                    reference,
                     cell(&joint.lower),
                     cell(&joint.upper),
                     cell(&joint.rest),
@@ -112,20 +128,31 @@ fn plain(x: f32) -> f64 {
     x.to_string().parse().unwrap_or(f64::from(x))
 }
 
+fn height(limit: &HeightLimit) -> Height {
+    Height {
+        lower: plain(limit.lower),
+        upper: plain(limit.upper),
+        rest: plain(limit.rest),
+        velocity: plain(limit.velocity),
+        acceleration: plain(limit.acceleration),
+    }
+}
+
 fn entry(limit: &JointLimit, name: &str, urdf: Option<Vec<String>>) -> Entry {
-    let count =
-        if limit.kind == JointKind::Free { 0 } else { limit.axes.iter().take_while(|axis| **axis != [0.0; 3]).count() };
+    let own = &limit.coordinates;
+    let free = limit.is_free();
+    let (bounds, rates) = if free { (0, 1) } else { (limit.count(), limit.count()) };
     let list = |values: &[f32; 3], count: usize| values.iter().take(count).map(|x| plain(*x)).collect::<Vec<_>>();
     Entry {
         joint: name.to_owned(),
-        kind: kind_name(limit.kind),
+        kind: if free { "free" } else { kind_name(own.kind) },
         urdf: urdf.unwrap_or_default(),
-        neutral: limit.neutral.iter().map(|x| plain(*x)).collect(),
-        axes: limit.axes.iter().take(count).map(|axis| axis.map(plain)).collect(),
-        lower: list(&limit.lower, count),
-        upper: list(&limit.upper, count),
-        rest: list(&limit.rest, count),
-        velocity: list(&limit.velocity, count.max(1)),
-        acceleration: list(&limit.acceleration, count.max(1)),
+        reference: own.reference.iter().map(|x| plain(*x)).collect(),
+        axes: own.axes.iter().take(onto::axes(own.kind)).map(|axis| axis.map(plain)).collect(),
+        lower: list(&limit.lower, bounds),
+        upper: list(&limit.upper, bounds),
+        rest: list(&limit.rest, bounds),
+        velocity: list(&limit.velocity, rates),
+        acceleration: list(&limit.acceleration, rates),
     }
 }

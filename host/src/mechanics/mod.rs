@@ -25,7 +25,7 @@ mod train;
 
 pub use body::{BodyError, body, measured};
 pub use dataset::{Rows, signed, signs};
-pub use evaluate::{ClipReport, Report, evaluate};
+pub use evaluate::{ClipReport, Distances, Report, evaluate};
 pub use linear::Linear;
 pub use model::MechanicsModel;
 pub use play::{HostMechanics, Overlap, blend, decouple, mix, modulate};

@@ -38,7 +38,7 @@ pub enum ReadPackError {
 impl PackFile {
     /// Reads and checks a pack.
     pub fn read(path: &Path) -> Result<Self, ReadPackError> {
-        let bytes = std::fs::read(path).map_err(|error| ReadPackError::Io { path: path.to_owned(), error })?;
+        let bytes = crate::files::read(path).map_err(|error| ReadPackError::Io { path: path.to_owned(), error })?;
         let file = Self::from_bytes(&bytes);
         file.pack().map_err(|error| ReadPackError::Load { path: path.to_owned(), error })?;
         Ok(file)
@@ -68,6 +68,6 @@ impl PackFile {
 
     /// Where the pack comes from; `None` if this release cannot read that part.
     pub fn provenance(&self) -> Option<Provenance> {
-        postcard::from_bytes(self.pack().ok()?.metadata().provenance).ok()
+        Provenance::decode(self.pack().ok()?.metadata().provenance)
     }
 }

@@ -19,6 +19,15 @@ pub struct Provenance {
     pub notes: Vec<String>,
     /// What simpler models would do; `kinesic eval` reports them beside the pack's own error.
     pub baselines: Baselines,
+    /// Translation: the counterpart of the baselines in rotations, [`Turns::numbers`](crate::measure::turns::Turns::numbers).
+    pub turns: Vec<f32>,
+}
+
+impl Provenance {
+    /// From a pack's metadata; `None` if this release cannot read it.
+    pub fn decode(bytes: &[u8]) -> Option<Self> {
+        postcard::from_bytes(bytes).ok()
+    }
 }
 
 /// A training file.
@@ -37,6 +46,13 @@ pub struct Metric {
     pub name: String,
     /// The figure.
     pub value: f64,
+}
+
+impl Metric {
+    /// A figure under its name.
+    pub fn new(name: impl Into<String>, value: f64) -> Self {
+        Self { name: name.into(), value }
+    }
 }
 
 /// Static models fitted on the same training data. Translation: on heading-local positions in metres, as the fields say. Body

@@ -9,7 +9,7 @@ use kinesic::model::{
 use serde::Serialize;
 
 use super::Provenance;
-use crate::quantise::IntegerLayer;
+use super::layout::{IntegerLayer, tile};
 
 /// Collects joints, models and tensors, and lays them out as a pack.
 #[derive(Debug)]
@@ -109,7 +109,7 @@ impl PackWriter {
     pub fn copy_models(&mut self, pack: &Pack) -> Result<(), LoadError> {
         let metadata = pack.metadata();
         metadata.models.iter().filter(|model| model.limits().is_none()).for_each(|model| self.model(&model));
-        let kept = |name: &str| !name.starts_with("skeleton/") && !name.starts_with("limit/");
+        let kept = |name: &str| !["skeleton/", "rig/", "limit/"].iter().any(|part| name.starts_with(part));
         for tensor in metadata.tensors.iter().filter(|tensor| kept(tensor.name)) {
             self.copy(&tensor, pack.bytes(&tensor).ok_or(LoadError::Metadata)?);
         }
@@ -150,16 +150,4 @@ impl PackWriter {
         let body = [&metadata[..], &vec![0; padding], &self.payload].concat();
         [&header[..], &checksum(&header, &body).to_le_bytes(), &body].concat()
     }
-}
-
-/// `tile[t][column][row in tile]`, rows padded with zeros to a multiple of [`ROWS`].
-fn tile(columns: usize, row_major: &[f32]) -> Vec<f32> {
-    let rows = row_major.len().checked_div(columns).unwrap_or(0);
-    let mut tiles = vec![0.0; rows.next_multiple_of(ROWS) * columns];
-    for (row, values) in row_major.chunks_exact(columns.max(1)).enumerate() {
-        for (column, value) in values.iter().enumerate() {
-            tiles[(row / ROWS * columns + column) * ROWS + row % ROWS] = *value;
-        }
-    }
-    tiles
 }

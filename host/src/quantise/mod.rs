@@ -4,32 +4,22 @@ mod translator;
 
 pub use translator::to_int16;
 
-use kinesic::kernel::{LARGEST_ACTIVATION, MOST_COLUMNS, PRE_ACTIVATION_BITS, ROWS, TILE};
+use kinesic::kernel::{LARGEST_ACTIVATION, MOST_COLUMNS, PRE_ACTIVATION_BITS};
 use kinesic::mechanics::{Decoupled, FEATURES, INPUT_SCALE, OUTPUT_BITS};
 use kinesic::model::{LoadError, TensorType};
-use kinesic::{MechanicsState, Pack, Pose, TranslatorState};
+use kinesic::{MechanicsState, Pack, Pose};
 
 use nalgebra::UnitQuaternion;
 use serde::Serialize;
 
 use crate::mechanics::HostMechanics;
+use crate::pack::layout::{IntegerLayer, row_major, tile_bytes};
 use crate::pack::{PackFile, PackWriter, Provenance};
-use crate::rig::MAX_JOINTS;
-use crate::translate::HostTranslator;
+use crate::rig::{MAX_JOINTS, Rig};
+use crate::translate::{self, play};
 
 /// Largest size of a weight in int8.
 const LARGEST_WEIGHT: f64 = 127.0;
-
-/// A layer in the integers that [`kinesic::kernel::Quantised`] reads.
-#[derive(Clone, Debug)]
-pub struct IntegerLayer {
-    /// Tiles of 4 rows, columns in groups of four.
-    pub weights: Vec<i8>,
-    /// One a row, for the sum.
-    pub multipliers: Vec<i32>,
-    /// One a row, in units of the result.
-    pub bias: Vec<i32>,
-}
 
 /// Why a pack cannot be quantised.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
@@ -106,9 +96,7 @@ pub fn layer(
     if columns > MOST_COLUMNS {
         return Err(QuantiseError::Columns { layer: name, found: columns });
     }
-    let groups = columns.div_ceil(TILE);
-    let mut out = vec![0; bias.len().div_ceil(TILE) * groups * TILE * TILE];
-    let (mut multipliers, mut biases) = (Vec::new(), Vec::new());
+    let (mut rows, mut multipliers, mut biases) = (Vec::new(), Vec::new(), Vec::new());
     let unit = f64::from(1u32 << bits);
     for (row, (weights, bias)) in weights.chunks_exact(columns.max(1)).zip(bias).enumerate() {
         let largest = weights.iter().fold(0.0f32, |most, w| most.max(w.abs()));
@@ -121,15 +109,10 @@ pub fn layer(
         }
         multipliers.push(multiplier as i32);
         biases.push(bias_units as i32);
-        for (column, weight) in weights.iter().enumerate() {
-            let rounded = if scale > 0.0 { (f64::from(*weight) / scale).round() as i8 } else { 0 };
-            // Bytes of a word are the columns 0, 2, 1, 3 of a group: see `kinesic_kernel_arch::Weights`.
-            let byte = [0, 2, 1, 3][column % TILE];
-            let word = (row / TILE * groups + column / TILE) * TILE + row % TILE;
-            out[word * TILE + byte] = rounded;
-        }
+        let rounded = |weight: &f32| if scale > 0.0 { (f64::from(*weight) / scale).round() as i8 } else { 0 };
+        rows.push(weights.iter().map(rounded).collect::<Vec<i8>>());
     }
-    Ok(IntegerLayer { weights: out, multipliers, bias: biases })
+    Ok(IntegerLayer { weights: tile_bytes(columns, &rows), multipliers, bias: biases })
 }
 
 /// Weights, scale and bias of a layer by name.
@@ -186,13 +169,6 @@ fn named(pack: &Pack) -> String {
     format!("{:?}", pack.kind()).to_lowercase()
 }
 
-/// A tiled matrix, untiled.
-fn row_major(pack: &Pack, name: &'static str, rows: usize, columns: usize) -> Result<Vec<f32>, LoadError> {
-    let tiles: &[[f32; ROWS]] = pack.slice(name, rows.div_ceil(ROWS) * columns)?;
-    let entry = |row: usize, column: usize| tiles[row / ROWS * columns + column][row % ROWS];
-    Ok((0..rows).flat_map(|row| (0..columns).map(move |column| entry(row, column))).collect())
-}
-
 /// How far the poses of two packs are apart: angle between the joints' rotations, all joints but the hips, degrees.
 #[derive(Clone, Debug, Serialize)]
 pub struct Difference {
@@ -230,22 +206,14 @@ pub fn difference(before: &Pack, after: &Pack, clips: &[Vec<Pose<MAX_JOINTS>>]) 
 pub fn translated_difference(
     before: &Pack,
     after: &Pack,
+    rig: &Rig,
     clips: &[Vec<Pose<MAX_JOINTS>>],
 ) -> Result<Difference, LoadError> {
-    let mut angles = Angles::new(before.metadata().joints.len());
-    let (first, second) = (HostTranslator::load(before)?, HostTranslator::load(after)?);
-    let mut states = [Box::new(TranslatorState::new()), Box::new(TranslatorState::new())];
-    let (mut a, mut b) = (Pose::identity(), Pose::identity());
+    let mut angles = Angles::new(rig.joints());
+    let settings = translate::Settings::default();
     for poses in clips {
-        if let Some(pose) = poses.first() {
-            first.start(&mut states[0], pose);
-            second.start(&mut states[1], pose);
-        }
-        for pose in poses {
-            first.step(&mut states[0], pose, &mut a);
-            second.step(&mut states[1], pose, &mut b);
-            angles.add(&a, &b);
-        }
+        let (first, second) = (play(before, rig, poses, &settings)?, play(after, rig, poses, &settings)?);
+        first.iter().zip(&second).for_each(|(a, b)| angles.add(a, b));
     }
     Ok(angles.finish())
 }

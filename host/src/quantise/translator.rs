@@ -3,14 +3,15 @@
 //! Scales are not guessed from clips: a state's scale is the largest at which no input within the kernel's range can take it out
 //! of its own, the sum of the sizes of its impulse response. So nothing saturates, whatever comes in.
 
-use kinesic::Pack;
 use kinesic::kernel::{
     Block, INPUT_BITS, JOINT_INPUT_CUT, JointBlock, LARGEST_INPUT, LARGEST_JOINT_ROW, LARGEST_ROW, OUTPUT_BITS,
     STATE_BITS, TRANSITION_BITS, is_stable,
 };
 use kinesic::model::{Form, LoadError, TensorType, TranslatorMeta};
+use kinesic::{Pack, Rig};
 
-use super::{QuantiseError, named, row_major};
+use super::{QuantiseError, named};
+use crate::pack::layout::row_major;
 use crate::pack::{PackFile, PackWriter, Provenance};
 
 /// Largest shift that a pack may hold.
@@ -40,7 +41,7 @@ pub fn to_int16(file: &PackFile, provenance: &Provenance) -> Result<Vec<u8>, Qua
     if pack.number("translate/direct")? == TensorType::I16 {
         return Err(QuantiseError::Done { number: "int16" });
     }
-    let joints = metadata.joints.len();
+    let rows = Rig::load(&pack)?.rows();
     let mut out = PackWriter::new(pack.kind(), metadata.name, metadata.frame_rate);
     metadata.joints.iter().for_each(|joint| out.joint(joint.name, joint.parent));
     metadata.models.iter().for_each(|model| out.model(&model));
@@ -51,14 +52,14 @@ pub fn to_int16(file: &PackFile, provenance: &Provenance) -> Result<Vec<u8>, Qua
             out.copy(&tensor, pack.bytes(&tensor).ok_or(LoadError::Metadata)?);
         }
     }
-    static_part(&pack, joints, &mut out)?;
+    static_part(&pack, rows, &mut out)?;
     match meta.form {
         Form::PerJoint => {
-            let timing = pack.slice("translate/timing_input", 3 * joints)?;
+            let timing = pack.slice("translate/timing_input", 3 * rows)?;
             clock(&mut out, &double(timing), None);
             per_joint(&pack, &meta, &mut out)?;
         }
-        Form::WholeBody => whole_body(&pack, &meta, joints, &mut out)?,
+        Form::WholeBody => whole_body(&pack, &meta, rows, &mut out)?,
     }
     Ok(out.finish(provenance))
 }
@@ -68,8 +69,8 @@ fn double(values: &[f32]) -> Vec<f64> {
 }
 
 /// Bias and direct term.
-fn static_part(pack: &Pack, joints: usize, out: &mut PackWriter) -> Result<(), QuantiseError> {
-    let bias: &[[f32; 3]] = pack.slice("translate/bias", joints)?;
+fn static_part(pack: &Pack, rows: usize, out: &mut PackWriter) -> Result<(), QuantiseError> {
+    let bias: &[[f32; 3]] = pack.slice("translate/bias", rows)?;
     let unit = f64::from(1u32 << OUTPUT_BITS);
     let mut biases = Vec::new();
     for (joint, bias) in bias.iter().enumerate() {
@@ -82,7 +83,7 @@ fn static_part(pack: &Pack, joints: usize, out: &mut PackWriter) -> Result<(), Q
         }
     }
     out.i32s("translate/bias", 3, &biases);
-    let direct: &[[f32; 9]] = pack.slice("translate/direct", joints)?;
+    let direct: &[[f32; 9]] = pack.slice("translate/direct", rows)?;
     let scale = unit * PRODUCT / f64::from(1u32 << INPUT_BITS);
     let mut directs = Vec::new();
     for (joint, direct) in direct.iter().enumerate() {
@@ -139,8 +140,8 @@ fn per_joint(pack: &Pack, meta: &TranslatorMeta, out: &mut PackWriter) -> Result
     Ok(())
 }
 
-fn whole_body(pack: &Pack, meta: &TranslatorMeta, joints: usize, out: &mut PackWriter) -> Result<(), QuantiseError> {
-    let (states, drives, channels) = (2 * meta.blocks as usize, meta.drives as usize, 3 * joints);
+fn whole_body(pack: &Pack, meta: &TranslatorMeta, rows: usize, out: &mut PackWriter) -> Result<(), QuantiseError> {
+    let (states, drives, channels) = (2 * meta.blocks as usize, meta.drives as usize, 3 * rows);
     let project = matrix(pack, "translate/project", drives, channels)?;
     let (mut rounded, mut gains, mut bounds) = (Vec::new(), Vec::new(), Vec::new());
     let most = f64::from(LARGEST_INPUT) / f64::from(1u32 << INPUT_BITS);

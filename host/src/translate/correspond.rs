@@ -4,7 +4,7 @@ use crate::align::{self, AlignError, Ends, Series, Settings, Warp, aligned_path}
 use crate::clip::Canonical;
 use crate::rig::{Locals, Rig};
 
-use super::dataset::{Correspondence, mirror_rows};
+use super::dataset::{Correspondence, mirror_positions};
 
 /// How the frames of two clips are brought together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,8 +21,12 @@ pub enum Alignment {
 }
 
 impl Alignment {
-    /// Every way.
-    pub const ALL: [Self; 4] = [Self::Warp, Self::Uniform, Self::InStep, Self::Opposite];
+    /// Every way that the motions of a rig can correspond. A machine that stands has no other foot.
+    pub fn of(rig: &Rig) -> Vec<Self> {
+        let mut ways = vec![Self::Warp, Self::Uniform, Self::InStep];
+        ways.extend(rig.frames().travels().then_some(Self::Opposite));
+        ways
+    }
 }
 
 /// Frames over which the slope of the clock is averaged, s.
@@ -56,7 +60,7 @@ pub fn correspond(
         }
         Alignment::Uniform => Ok(uniform(source.frames(), target.frames())),
         Alignment::InStep => phase(&target.positions, OPEN),
-        Alignment::Opposite => phase(&mirror_rows(&target.positions, partners), OPEN),
+        Alignment::Opposite => phase(&mirror_positions(&target.positions, partners), OPEN),
     }
 }
 
@@ -112,7 +116,11 @@ fn limb_phase(positions: &[f64], channels: usize, rig: &Rig, fps: f64) -> Vec<f6
         [LHip, LKnee, LAnkle, LToe, RHip, RKnee, RAnkle, RToe, LElbow, LWrist, RElbow, RWrist];
     let joints: Vec<usize> = LIMBS.into_iter().filter_map(|limb| rig.map.joint(limb)).collect();
     let frames = positions.len() / channels.max(1);
-    let columns: Vec<usize> = joints.iter().flat_map(|j| 3 * j..3 * j + 3).collect();
+    // Every joint of a machine is a limb.
+    let columns: Vec<usize> = match joints.is_empty() {
+        true => (0..channels).collect(),
+        false => joints.iter().flat_map(|j| 3 * j..3 * j + 3).collect(),
+    };
     let mean: Vec<f64> = columns
         .iter()
         .map(|c| (0..frames).map(|t| positions[t * channels + c]).sum::<f64>() / frames.max(1) as f64)

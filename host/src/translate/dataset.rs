@@ -2,7 +2,9 @@
 
 use std::ops::Range;
 
-use crate::rig::Locals;
+use kinesic::rig::JointKind;
+
+use crate::rig::{Locals, Rig};
 
 /// Which styled moment belongs to which source frame.
 #[derive(Clone, Debug)]
@@ -15,8 +17,8 @@ pub struct Correspondence {
     pub duration: Vec<f64>,
 }
 
-/// Input and wanted output of the models. Rows hold `[3 joints]` values in metres, heading-local; the root's three are
-/// `[travel x, height, travel z]`, with the travel in metres per *source* frame.
+/// Input and wanted output of the models: [coordinates](kinesic::rig), each times its lever, so that all are metres and an error
+/// counts as much as it moves. Travel is per *source* frame.
 #[derive(Clone, Debug)]
 pub struct Sequence {
     /// Channels of a row.
@@ -35,9 +37,9 @@ pub struct Sequence {
 
 impl Sequence {
     /// The sequence of a pair.
-    pub fn new(source: &Locals, target: &Locals, on: &Correspondence, group: usize) -> Self {
-        let styled = rows(target);
-        let channels = target.channels();
+    pub fn new(rig: &Rig, source: &Locals, target: &Locals, on: &Correspondence, group: usize) -> Self {
+        let styled = rig.scaled(&target.coordinates);
+        let channels = 3 * rig.rows();
         let last = target.frames().saturating_sub(1);
         let mut output = Vec::with_capacity(on.target.len() * channels);
         for (at, duration) in on.target.iter().zip(&on.duration) {
@@ -47,12 +49,14 @@ impl Sequence {
             let start = output.len();
             let (a, b) = (&styled[before * channels..][..channels], &styled[after * channels..][..channels]);
             output.extend(a.iter().zip(b).map(|(a, b)| a + weight * (b - a)));
-            output[start] *= duration;
-            output[start + 2] *= duration;
+            if rig.frames().travels() {
+                output[start] *= duration;
+                output[start + 2] *= duration;
+            }
         }
         Self {
             channels,
-            input: rows(source),
+            input: rig.scaled(&source.coordinates),
             covered: on.covered.clone(),
             output,
             log_duration: on.duration.iter().map(|d| d.log2()).collect(),
@@ -60,11 +64,11 @@ impl Sequence {
         }
     }
 
-    /// The sequence in a mirror: left and right exchanged, X negated.
-    pub fn mirrored(&self, partners: &[usize]) -> Self {
+    /// The sequence in a mirror: left and right exchanged.
+    pub fn mirrored(&self, mirror: &Mirror) -> Self {
         Self {
-            input: mirror_rows(&self.input, partners),
-            output: mirror_rows(&self.output, partners),
+            input: mirror.rows(&self.input),
+            output: mirror.rows(&self.output),
             covered: self.covered.clone(),
             log_duration: self.log_duration.clone(),
             channels: self.channels,
@@ -78,18 +82,46 @@ impl Sequence {
     }
 }
 
-/// Rows of all frames of a clip, with the travel in the root's row.
-pub fn rows(locals: &Locals) -> Vec<f64> {
-    let mut rows = locals.positions.clone();
-    for (row, [x, z]) in rows.chunks_exact_mut(locals.channels()).zip(&locals.travel) {
-        (row[0], row[2]) = (*x, *z);
-    }
-    rows
+/// Where every coordinate goes in a mirror that turns X round, and whether its sign changes.
+#[derive(Clone, Debug)]
+pub struct Mirror {
+    from: Vec<(usize, f64)>,
 }
 
-/// Rows (or positions) in a mirror.
-pub fn mirror_rows(rows: &[f64], partners: &[usize]) -> Vec<f64> {
-    rows.chunks_exact(3 * partners.len())
+impl Mirror {
+    /// The mirror of a body; `None` where left and right are not mirror images, or joints have other coordinates than balls have.
+    pub fn new(rig: &Rig) -> Option<Self> {
+        let device = rig.frames();
+        let places: Vec<_> = device.places().collect();
+        let balls = places.iter().all(|(kind, _)| matches!(kind, JointKind::Ball | JointKind::Fixed));
+        if !(balls && device.travels() && rig.is_symmetrical()) {
+            return None;
+        }
+        let mut from: Vec<(usize, f64)> = (0..3 * device.rows()).map(|channel| (channel, 1.0)).collect();
+        from[0].1 = -1.0;
+        for (joint, (kind, first)) in places.iter().enumerate() {
+            let (other, start) = places[rig.map.mirror_partner(joint).unwrap_or(joint)];
+            if other != *kind {
+                return None;
+            }
+            // A rotation vector is no arrow: what lies along the mirror's normal stays, the rest turns round.
+            for (axis, sign) in [1.0, -1.0, -1.0].into_iter().enumerate().take(kind.coordinates()) {
+                from[first + axis] = (start + axis, sign);
+            }
+        }
+        Some(Self { from })
+    }
+
+    /// Rows in the mirror.
+    pub fn rows(&self, rows: &[f64]) -> Vec<f64> {
+        rows.chunks_exact(self.from.len()).flat_map(|row| self.from.iter().map(|(at, sign)| sign * row[*at])).collect()
+    }
+}
+
+/// Positions `[frames x 3 joints]` in a mirror.
+pub fn mirror_positions(positions: &[f64], partners: &[usize]) -> Vec<f64> {
+    positions
+        .chunks_exact(3 * partners.len())
         .flat_map(|row| {
             partners.iter().flat_map(|partner| [-row[3 * partner], row[3 * partner + 1], row[3 * partner + 2]])
         })

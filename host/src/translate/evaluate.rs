@@ -1,4 +1,4 @@
-//! How well a pack translates: aligned RMS joint distance, beside what simpler models do.
+//! How well a pack translates: aligned RMS joint distance and mean angle, beside what simpler models do.
 
 use kinesic::Pack;
 use kinesic::model::LoadError;
@@ -7,8 +7,10 @@ use serde::Serialize;
 use super::baseline;
 use super::correspond::OPEN;
 use super::play::{Settings, play};
-use crate::align::{AlignError, Ends, Series, aligned_distance};
+use crate::align::{AlignError, Ends};
 use crate::clip::Clip;
+use crate::measure::turns::Turns;
+use crate::measure::{Degrees, Distance, Measurable, compare};
 use crate::pack::Baselines;
 use crate::rig::Rig;
 
@@ -24,11 +26,11 @@ pub enum EvaluateError {
     Align(#[from] AlignError),
 }
 
-/// Aligned RMS joint distances to the target, cm, heading-local, without horizontal root movement.
+/// Distances to the target: aligned RMS joint distance, cm, heading-local, without horizontal root movement, and mean angles.
 ///
 /// The plain figures match first frame with first and last with last; `open_*` leave up to a third of a clip unmatched at
 /// either end, for walks that start on different feet.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Errors {
     /// The pack's output, played through the device's code.
     pub error_cm: f64,
@@ -46,6 +48,52 @@ pub struct Errors {
     pub open_offset_cm: f64,
     /// As `affine_cm`, with open ends.
     pub open_affine_cm: f64,
+    /// Angles along the paths of the figures in cm.
+    pub degrees: Angles,
+    /// The same with open ends, without the joints.
+    pub open_degrees: Angles,
+}
+
+/// Mean angles to the target, degrees.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Angles {
+    /// The pack's output.
+    pub error: Degrees,
+    /// The source itself.
+    pub identity: Degrees,
+    /// The source turned by the mean differences of the training pairs; absent in packs that do not hold them.
+    pub offset: Option<Degrees>,
+    /// The source through the best affine map of each joint's rotation vector; absent like `offset`.
+    pub affine: Option<Degrees>,
+}
+
+/// Distances of the pack's output, the source, the offset and the affine map.
+type Distances = [Distance; 4];
+
+impl Errors {
+    /// From distances with closed and with open ends; `turns` says whether those of the simpler models know rotations.
+    fn new(closed: Distances, open: Distances, turns: bool) -> Self {
+        let [error_cm, identity_cm, offset_cm, affine_cm] = closed.each_ref().map(|d| d.cm);
+        let [open_error_cm, open_identity_cm, open_offset_cm, open_affine_cm] = open.each_ref().map(|d| d.cm);
+        Self {
+            error_cm,
+            identity_cm,
+            offset_cm,
+            affine_cm,
+            open_error_cm,
+            open_identity_cm,
+            open_offset_cm,
+            open_affine_cm,
+            degrees: Angles::new(closed.map(|d| d.degrees), turns),
+            open_degrees: Angles::new(open.map(|d| d.degrees.brief()), turns),
+        }
+    }
+}
+
+impl Angles {
+    fn new([error, identity, offset, affine]: [Degrees; 4], turns: bool) -> Self {
+        Self { error, identity, offset: turns.then_some(offset), affine: turns.then_some(affine) }
+    }
 }
 
 /// Errors of one pair.
@@ -80,43 +128,42 @@ pub struct NamedPair<'a> {
 }
 
 /// Plays every source through the device's code and compares with its target.
-pub fn evaluate(pack: &Pack, rig: &Rig, baselines: &Baselines, pairs: &[NamedPair]) -> Result<Report, EvaluateError> {
-    let mut reports = Vec::new();
+///
+/// Without `turns` the angles of the simpler models stay out.
+pub fn evaluate(
+    pack: &Pack,
+    rig: &Rig,
+    baselines: &Baselines,
+    turns: Option<&Turns>,
+    pairs: &[NamedPair],
+) -> Result<Report, EvaluateError> {
+    let (mut closed, mut open) = (Vec::new(), Vec::new());
     for pair in pairs {
         let poses = rig.poses(pair.source.1);
-        let source = rig.locals(&poses).positions;
-        let target = rig.locals(&rig.poses(pair.target.1)).positions;
-        let styled = rig.locals(&play(pack, &poses, &Settings::default())?).positions;
-        let offset = baseline::apply_offset(baselines, &source);
-        let affine = baseline::apply_affine(baselines, &source);
-        let distance = |positions: &[f64], ends| -> Result<f64, AlignError> {
-            let channels = 3 * rig.joints();
-            let found = aligned_distance(Series::new(positions, channels)?, Series::new(&target, channels)?, ends)?;
-            Ok(100.0 * found.rms)
+        let source = Measurable::of_poses(rig, &poses);
+        let target = Measurable::new(rig, pair.target.1);
+        let styled = Measurable::of_poses(rig, &play(pack, rig, &poses, &Settings::default())?);
+        let offset = Measurable {
+            positions: baseline::apply_offset(baselines, &source.positions),
+            rotations: turns.map_or_else(|| source.rotations.clone(), |t| t.offset(&source.rotations)),
         };
-        let errors = Errors {
-            error_cm: distance(&styled, Ends::Closed)?,
-            identity_cm: distance(&source, Ends::Closed)?,
-            offset_cm: distance(&offset, Ends::Closed)?,
-            affine_cm: distance(&affine, Ends::Closed)?,
-            open_error_cm: distance(&styled, OPEN)?,
-            open_identity_cm: distance(&source, OPEN)?,
-            open_offset_cm: distance(&offset, OPEN)?,
-            open_affine_cm: distance(&affine, OPEN)?,
+        let affine = Measurable {
+            positions: baseline::apply_affine(baselines, &source.positions),
+            rotations: turns.map_or_else(|| source.rotations.clone(), |t| t.affine(&source.rotations)),
         };
-        reports.push(PairReport { source: pair.source.0.to_owned(), target: pair.target.0.to_owned(), errors });
+        let distances = |ends| -> Result<Distances, AlignError> {
+            let to_target = |motion| compare(rig, motion, &target, ends);
+            Ok([to_target(&styled)?, to_target(&source)?, to_target(&offset)?, to_target(&affine)?])
+        };
+        closed.push(distances(Ends::Closed)?);
+        open.push(distances(OPEN)?);
     }
-    let mean =
-        |of: fn(&Errors) -> f64| reports.iter().map(|p| of(&p.errors)).sum::<f64>() / reports.len().max(1) as f64;
-    let errors = Errors {
-        error_cm: mean(|e| e.error_cm),
-        identity_cm: mean(|e| e.identity_cm),
-        offset_cm: mean(|e| e.offset_cm),
-        affine_cm: mean(|e| e.affine_cm),
-        open_error_cm: mean(|e| e.open_error_cm),
-        open_identity_cm: mean(|e| e.open_identity_cm),
-        open_offset_cm: mean(|e| e.open_offset_cm),
-        open_affine_cm: mean(|e| e.open_affine_cm),
+    let mean = |all: &[Distances]| [0, 1, 2, 3].map(|model| Distance::mean(all.iter().map(move |d| &d[model])));
+    let errors = Errors::new(mean(&closed), mean(&open), turns.is_some());
+    let report = |(pair, (closed, open)): (&NamedPair, (Distances, Distances))| PairReport {
+        source: pair.source.0.to_owned(),
+        target: pair.target.0.to_owned(),
+        errors: Errors::new(closed, open, turns.is_some()),
     };
-    Ok(Report { errors, pairs: reports })
+    Ok(Report { errors, pairs: pairs.iter().zip(closed.into_iter().zip(open)).map(report).collect() })
 }

@@ -13,6 +13,7 @@ use super::identify;
 use super::model::{BankModel, TimingModel, TranslatorModel};
 use super::moments::{Base, Map, Moments, Shape, stack};
 use crate::reached::Reached;
+use crate::rig::Rig;
 
 /// Deviation below which a joint counts as still, m.
 const STILL: f64 = 0.01;
@@ -26,6 +27,7 @@ pub struct Problem<'a> {
     /// Mirrored copies (none, or one a sequence); they are trained on, never validated on.
     mirrored: &'a [Sequence],
     fps: f64,
+    rig: &'a Rig,
     channels: usize,
     mean: Vec<f64>,
     /// Right singular vectors of the centred inputs, `[channels x coordinates]`, over the first singular deviation.
@@ -38,7 +40,7 @@ pub struct Problem<'a> {
 
 impl<'a> Problem<'a> {
     /// Normalises, finds the principal coordinates and the main frequency, and lays out the folds.
-    pub fn new(sequences: &'a [Sequence], mirrored: &'a [Sequence], fps: f64) -> Self {
+    pub fn new(rig: &'a Rig, sequences: &'a [Sequence], mirrored: &'a [Sequence], fps: f64) -> Self {
         let channels = sequences.first().map_or(3, |s| s.channels);
         let all = || sequences.iter().chain(mirrored);
         let frames: usize = all().map(|s| s.input.len() / channels).sum();
@@ -59,6 +61,7 @@ impl<'a> Problem<'a> {
             sequences,
             mirrored,
             fps,
+            rig,
             channels,
             main_frequency: main_frequency(&coordinates, fps),
             mean,
@@ -73,8 +76,13 @@ impl<'a> Problem<'a> {
         self.main_frequency
     }
 
-    fn joints(&self) -> usize {
+    fn rows(&self) -> usize {
         self.channels / 3
+    }
+
+    /// The root's travel is no position, and no error either.
+    fn is_travel(&self, channel: usize) -> bool {
+        self.rig.frames().travels() && (channel == 0 || channel == 2)
     }
 
     /// Dynamics and features (`[x' | drives]`, all frames) of every sequence, then of every mirrored one.
@@ -82,9 +90,13 @@ impl<'a> Problem<'a> {
         let coordinates = coordinates.min(self.basis.ncols());
         let basis = self.basis.subcols(0, coordinates);
         let drives = |s: &Sequence| centred(&s.input, &self.mean) * basis;
-        let dynamics = poles.bank(coordinates, self.main_frequency, self.fps).unwrap_or_default();
-        let all = self.sequences.iter().chain(self.mirrored);
-        let features = all.map(|s| with_states(&dynamics, drives(s))).collect();
+        let all = || self.sequences.iter().chain(self.mirrored);
+        let inputs: Vec<Mat<f64>> = all().map(drives).collect();
+        let dynamics = poles.bank(coordinates, self.main_frequency, self.fps).unwrap_or_else(|| {
+            let outputs: Vec<Mat<f64>> = all().map(|s| centred(&s.output, &vec![0.0; self.channels])).collect();
+            self.identified(&inputs, &outputs, poles)
+        });
+        let features = inputs.into_iter().map(|u| with_states(&dynamics, u)).collect();
         (dynamics, features)
     }
 
@@ -99,12 +111,18 @@ impl<'a> Problem<'a> {
         let inputs: Vec<Mat<f64>> = inputs.into_iter().map(|u| u * faer::Scale(scale)).collect();
         let dynamics = poles.bank(3, self.main_frequency, self.fps).unwrap_or_else(|| {
             let outputs: Vec<Mat<f64>> = all().map(|s| columns(&s.output, self.channels, joint, &[])).collect();
-            let covered: Vec<Range<usize>> = all().map(|s| s.covered.clone()).collect();
-            let Poles::Identified(order) = poles else { return Dynamics::default() };
-            identify::dynamics(&inputs, &outputs, &covered, order, self.fps)
+            self.identified(&inputs, &outputs, poles)
         });
         let features = inputs.into_iter().map(|u| with_states(&dynamics, u)).collect();
         (dynamics, scale, features)
+    }
+
+    /// Dynamics found from the data; those without states where `poles` says otherwise.
+    fn identified(&self, inputs: &[Mat<f64>], outputs: &[Mat<f64>], poles: Poles) -> Dynamics {
+        let Poles::Identified(order) = poles else { return Dynamics::default() };
+        let all = self.sequences.iter().chain(self.mirrored);
+        let covered: Vec<Range<usize>> = all.map(|s| s.covered.clone()).collect();
+        identify::dynamics(inputs, outputs, &covered, order, self.fps)
     }
 
     /// Moments of all frames, and for each fold those of the training and of the held-back frames.
@@ -158,7 +176,7 @@ impl<'a> Problem<'a> {
             .iter()
             .enumerate()
             .flat_map(|(index, (coordinates, _))| {
-                let joints = if coordinates.is_some() { 0..0 } else { 0..self.joints() };
+                let joints = if coordinates.is_some() { 0..0 } else { 0..self.rows() };
                 let whole = coordinates.map(|_| (index, Unit::Body));
                 whole.into_iter().chain(joints.map(move |joint| (index, Unit::Joint(joint))))
             })
@@ -179,8 +197,7 @@ impl<'a> Problem<'a> {
                     let folds = self.moments(&features, channels.clone());
                     let states =
                         features.first().map_or(0, Mat::ncols) - coordinates.map_or(3, |c| c.min(self.basis.ncols()));
-                    // The root's horizontal rows hold travel, which is no position.
-                    let weight = |c: usize| if channels.start == 0 && (c == 0 || c == 2) { 0.0 } else { 1.0 };
+                    let weight = |c: usize| if self.is_travel(channels.start + c) { 0.0 } else { 1.0 };
                     members().map(|(_, candidate)| folds.error(candidate, states, &weight)).collect()
                 };
                 let errors = reached.always(&format!("{name} {coordinates:?} {poles:?} {unit:?}"), work);
@@ -190,11 +207,11 @@ impl<'a> Problem<'a> {
         for (index, error) in partial.into_iter().flatten() {
             errors[index] += error;
         }
-        errors.iter().map(|e| (e / (frames.max(1) * self.joints()) as f64).sqrt()).collect()
+        errors.iter().map(|e| (e / (frames.max(1) * self.rows()) as f64).sqrt()).collect()
     }
 
-    /// What a candidate makes of each sequence when it has not seen the fold it speaks of: positions, `[frames x 3 joints]`,
-    /// m. Frames without a partner are left to the model of all folds.
+    /// What a candidate makes of each sequence when it has not seen the fold it speaks of: coordinates, `[frames x 3 rows]`,
+    /// rad or m. Frames without a partner are left to the model of all folds.
     pub fn held_out(&self, candidate: &Candidate) -> Option<Vec<Vec<f64>>> {
         let mut predicted: Vec<Vec<f64>> = self.sequences.iter().map(|s| vec![0.0; s.input.len()]).collect();
         match candidate.coordinates {
@@ -203,18 +220,18 @@ impl<'a> Problem<'a> {
                 self.predict_held_out(candidate, &dynamics, &features, 0..self.channels, &mut predicted)?;
             }
             None => {
-                for joint in 0..self.joints() {
+                for joint in 0..self.rows() {
                     let (dynamics, _, features) = self.per_joint(joint, candidate.poles);
                     let channels = 3 * joint..3 * joint + 3;
                     self.predict_held_out(candidate, &dynamics, &features, channels, &mut predicted)?;
                 }
             }
         }
-        // The root's horizontal rows hold travel, which is no position.
+        let levers = self.rig.levers();
         predicted
             .iter_mut()
             .flat_map(|p| p.chunks_exact_mut(self.channels))
-            .for_each(|row| (row[0], row[2]) = (0.0, 0.0));
+            .for_each(|row| row.iter_mut().zip(&levers).for_each(|(x, lever)| *x /= lever));
         Some(predicted)
     }
 
@@ -261,7 +278,7 @@ impl<'a> Problem<'a> {
             mean: self.mean.clone(),
             inverse_deviation: vec![1.0; self.channels],
             bias: Vec::with_capacity(self.channels),
-            direct: Vec::with_capacity(9 * self.joints()),
+            direct: Vec::with_capacity(9 * self.rows()),
             bank: BankModel::PerJoint(Vec::new()),
             timing: TimingModel { input: vec![0.0; self.channels], ..TimingModel::default() },
             strength: [0.0, 1.0],
@@ -270,6 +287,7 @@ impl<'a> Problem<'a> {
             Some(coordinates) => self.fit_whole_body(&mut model, candidate, coordinates)?,
             None => self.fit_per_joint(&mut model, candidate)?,
         }
+        model.unscale(&self.rig.levers());
         Some(model)
     }
 
@@ -278,7 +296,7 @@ impl<'a> Problem<'a> {
         let states = dynamics.states();
         let total = self.moments(&features, 0..self.channels).total;
         let map = total.fit(candidate.base, &candidate.penalties(states, dynamics.inputs))?;
-        for joint in 0..self.joints() {
+        for joint in 0..self.rows() {
             push_joint(model, &map, joint, &self.mean[3 * joint..3 * joint + 3], 1.0);
         }
         let (of_state, of_input) = dynamics.output_of(&map.weights);
@@ -301,7 +319,7 @@ impl<'a> Problem<'a> {
     }
 
     fn fit_per_joint(&self, model: &mut TranslatorModel, candidate: &Candidate) -> Option<()> {
-        let joints: Vec<Option<(Dynamics, f64, Map)>> = (0..self.joints())
+        let joints: Vec<Option<(Dynamics, f64, Map)>> = (0..self.rows())
             .into_par_iter()
             .map(|joint| {
                 let (dynamics, scale, features) = self.per_joint(joint, candidate.poles);

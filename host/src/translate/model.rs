@@ -12,13 +12,13 @@ pub struct TranslatorModel {
     pub style: String,
     /// Frames per second.
     pub frame_rate: f64,
-    /// Input mean, m, `[3 joints]`.
+    /// Input mean, rad or m, `[3 rows]`.
     pub mean: Vec<f64>,
-    /// 1 / input deviation, 1/m, `[3 joints]`; 0 for a channel that never moved.
+    /// 1 / input deviation, `[3 rows]`; 0 for a channel that never moved.
     pub inverse_deviation: Vec<f64>,
-    /// Output at the mean input, m, `[3 joints]`.
+    /// Output at the mean input, `[3 rows]`.
     pub bias: Vec<f64>,
-    /// Direct term of each joint, m, `[joints x 9]`.
+    /// Direct term of each row, `[rows x 9]`.
     pub direct: Vec<f64>,
     /// The dynamic part.
     pub bank: BankModel,
@@ -31,17 +31,17 @@ pub struct TranslatorModel {
 /// The dynamic part of a translator.
 #[derive(Clone, Debug)]
 pub enum BankModel {
-    /// One model a joint, any number of blocks each, as [`kinesic::kernel::JointBlock`].
+    /// One model per row (a ball, or up to three servos), any number of blocks each, as [`kinesic::kernel::JointBlock`].
     PerJoint(Vec<Vec<[f64; 16]>>),
     /// One model for all.
     WholeBody {
-        /// `[drives x 3 joints]`.
+        /// `[drives x 3 rows]`.
         project: Vec<f64>,
         /// 2 x 2 blocks.
         transition: Vec<[f64; 4]>,
         /// `[states x drives]`.
         input: Vec<f64>,
-        /// `[3 joints x (states + drives)]`, m.
+        /// `[3 rows x (states + drives)]`.
         output: Vec<f64>,
     },
 }
@@ -53,16 +53,41 @@ pub struct TimingModel {
     pub bias: f64,
     /// Lowest and highest value allowed.
     pub range: [f64; 2],
-    /// `[3 joints]`.
+    /// `[3 rows]`.
     pub input: Vec<f64>,
     /// `[states + drives]`, empty in the per-joint form.
     pub states: Vec<f64>,
 }
 
 impl TranslatorModel {
-    /// Number of joints.
-    pub fn joints(&self) -> usize {
+    /// Rows of coordinates.
+    pub fn rows(&self) -> usize {
         self.mean.len() / 3
+    }
+
+    /// A model that was fitted on coordinates times `levers`, for coordinates.
+    pub(super) fn unscale(&mut self, levers: &[f64]) {
+        self.mean.iter_mut().zip(levers).for_each(|(mean, lever)| *mean /= lever);
+        self.inverse_deviation.iter_mut().zip(levers).for_each(|(inverse, lever)| *inverse *= lever);
+        self.bias.iter_mut().zip(levers).for_each(|(bias, lever)| *bias /= lever);
+        for (row, lever) in self.direct.chunks_exact_mut(3).zip(levers) {
+            row.iter_mut().for_each(|gain| *gain /= lever);
+        }
+        match &mut self.bank {
+            BankModel::PerJoint(bank) => {
+                for (blocks, levers) in bank.iter_mut().zip(levers.chunks_exact(3)) {
+                    for block in blocks {
+                        (0..6).for_each(|entry| block[10 + entry] /= levers[entry % 3]);
+                    }
+                }
+            }
+            BankModel::WholeBody { output, .. } => {
+                let columns = output.len() / levers.len();
+                for (row, lever) in output.chunks_exact_mut(columns.max(1)).zip(levers) {
+                    row.iter_mut().for_each(|weight| *weight /= lever);
+                }
+            }
+        }
     }
 
     /// Inputs of the shared model, 0 in the per-joint form.

@@ -1,17 +1,17 @@
 //! Plays a pack through the device's own code, frame by frame.
 
+use kinesic::engine::Controls;
 use kinesic::model::LoadError;
-use kinesic::translate::Controls;
 use kinesic::{Pack, Pose, Translator, TranslatorState};
 use nalgebra::UnitQuaternion;
 
-use crate::rig::MAX_JOINTS;
+use crate::rig::{MAX_JOINTS, MAX_ROWS, Rig};
 
 /// Filter states that the host steps.
 const MAX_STATES: usize = 16_384;
 
 /// The device's translator at the host's capacity.
-pub type HostTranslator<'a> = Translator<'a, MAX_JOINTS, MAX_STATES>;
+pub type HostTranslator<'a> = Translator<'a, MAX_ROWS, MAX_STATES>;
 
 /// Strengths up to which the learned timing is carried on, either way: beyond, a clip could last for ever.
 pub const TIMING_STRENGTH: f32 = 4.0;
@@ -30,7 +30,7 @@ pub enum Timing {
 #[derive(Clone, Debug)]
 pub struct Settings {
     /// Strength and mask.
-    pub controls: Controls<MAX_JOINTS>,
+    pub controls: Controls<MAX_ROWS>,
     /// The clock.
     pub timing: Timing,
 }
@@ -42,25 +42,27 @@ impl Default for Settings {
 }
 
 /// Translates the poses of a clip at the pack's frame rate, from the state that holding the first pose leads to.
-pub fn play(pack: &Pack, source: &[Pose<MAX_JOINTS>], settings: &Settings) -> Result<Vec<Pose<MAX_JOINTS>>, LoadError> {
+pub fn play(
+    pack: &Pack,
+    rig: &Rig,
+    source: &[Pose<MAX_JOINTS>],
+    settings: &Settings,
+) -> Result<Vec<Pose<MAX_JOINTS>>, LoadError> {
     let translator = HostTranslator::load(pack)?;
     let mut state = Box::new(TranslatorState::new());
     state.controls = settings.controls;
-    let mut styled = Vec::with_capacity(source.len());
     let mut clock = Vec::with_capacity(source.len());
     let mut now = 0.0;
     let strength = settings.controls.strength.clamp(-TIMING_STRENGTH, TIMING_STRENGTH);
-    if let Some(first) = source.first() {
-        translator.start(&mut state, first);
-    }
-    for pose in source {
-        let mut out = Pose::identity();
-        let timing = translator.step(&mut state, pose, &mut out);
-        styled.push(out);
+    let styled = rig.restyle(source, |frame| {
+        if clock.is_empty() {
+            translator.start(&mut state, frame);
+        }
+        let timing = translator.step(&mut state, frame);
         clock.push(now);
         // Strength acts on the clock as on the pose (up to `TIMING_STRENGTH`): 0 keeps it.
         now += f64::from(timing.duration).powf(f64::from(strength));
-    }
+    });
     Ok(match settings.timing {
         Timing::Keep => styled,
         Timing::Learned => retime(&styled, &clock),

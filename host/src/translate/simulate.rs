@@ -2,16 +2,16 @@
 
 use faer::Mat;
 
-use super::dataset::rows;
 use super::dynamics::Dynamics;
 use super::model::{BankModel, TranslatorModel};
 use crate::rig::Locals;
 
-/// Heading-local positions that the model makes of a clip, m, `[frames x 3 joints]`; the root's is `[0, height, 0]`.
+/// Coordinates that the model makes of a clip, rad or m, `[frames x 3 rows]`.
 pub fn simulate(model: &TranslatorModel, source: &Locals) -> Vec<f64> {
-    let channels = source.channels();
-    let mut styled = Vec::with_capacity(source.positions.len());
-    let input: Vec<Vec<f64>> = rows(source)
+    let channels = 3 * source.rows;
+    let mut styled = Vec::with_capacity(source.coordinates.len());
+    let input: Vec<Vec<f64>> = source
+        .coordinates
         .chunks_exact(channels)
         .map(|row| {
             let centred = row.iter().zip(&model.mean).zip(&model.inverse_deviation);
@@ -23,8 +23,7 @@ pub fn simulate(model: &TranslatorModel, source: &Locals) -> Vec<f64> {
         for channel in 0..channels {
             let (joint, row) = (channel / 3, channel % 3);
             let direct: f64 = (0..3).map(|d| model.direct[9 * joint + 3 * row + d] * u[3 * joint + d]).sum();
-            let travels = channel == 0 || channel == 2;
-            styled.push(if travels { 0.0 } else { model.bias[channel] + direct + dynamic[(frame, channel)] });
+            styled.push(model.bias[channel] + direct + dynamic[(frame, channel)]);
         }
     }
     styled

@@ -25,7 +25,7 @@ pub fn plausible(
     while largest < LIMIT {
         let mut settings = Settings::default();
         settings.controls.strength = (largest + 0.25) as f32;
-        let styled = sources.iter().map(|clip| play(pack, clip, &settings)).collect::<Result<Vec<_>, _>>()?;
+        let styled = sources.iter().map(|clip| play(pack, rig, clip, &settings)).collect::<Result<Vec<_>, _>>()?;
         if fastest(&styled) > bound {
             break;
         }

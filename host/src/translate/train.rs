@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::baseline;
 use super::candidate::{AFFINE, Candidate, JUDGE, QUICK};
 use super::correspond::{Alignment, OPEN, correspond, correspond_output, correspond_plainly};
-use super::dataset::{Correspondence, Sequence};
+use super::dataset::{Correspondence, Mirror, Sequence};
 use super::dynamics::Poles;
 use super::fit::Problem;
 use super::model::TranslatorModel;
@@ -75,6 +75,9 @@ pub enum TrainError {
         /// The cause.
         error: AlignError,
     },
+    /// Mirrored copies were asked for.
+    #[error("left and right of this skeleton are not mirror images: mirrored copies of its motion cannot be made")]
+    NoMirror,
     /// Nothing to learn from.
     #[error("the clips do not determine a model: they have too few frames, or nothing moves")]
     Undetermined,
@@ -154,7 +157,7 @@ pub fn train_kept(
     }
     progress(Stage::Align);
     let partners = partners(rig);
-    let ways = options.alignment.map_or_else(|| Alignment::ALL.to_vec(), |way| vec![way]);
+    let ways = options.alignment.map_or_else(|| Alignment::of(rig), |way| vec![way]);
     let align = |way| aligned(way, rig, pairs, &partners, fps);
     let tried: Vec<(Alignment, f64, Option<Vec<Sequence>>)> = ways
         .par_iter()
@@ -175,13 +178,18 @@ pub fn train_kept(
     let sequences = sequences.map_or_else(|| Ok(align(alignment)?.1), Ok)?;
 
     progress(Stage::Validate);
-    let copies: Vec<Sequence> = sequences.iter().map(|s| s.mirrored(&partners)).collect();
-    let mirrored = options.mirror.unwrap_or_else(|| {
-        let error = |copies, name| Problem::new(&sequences, copies, fps).validate(&[QUICK], reached, name)[0];
-        error(&copies, "mirrored") < error(&[], "not mirrored")
-    });
-    let problem = Problem::new(&sequences, if mirrored { &copies } else { &[] }, fps);
-    let grid = grid(options);
+    let mirror = Mirror::new(rig);
+    if options.mirror == Some(true) && mirror.is_none() {
+        return Err(TrainError::NoMirror);
+    }
+    let copies: Vec<Sequence> = mirror.iter().flat_map(|mirror| sequences.iter().map(|s| s.mirrored(mirror))).collect();
+    let mirrored = mirror.is_some()
+        && options.mirror.unwrap_or_else(|| {
+            let error = |copies, name| Problem::new(rig, &sequences, copies, fps).validate(&[QUICK], reached, name)[0];
+            error(&copies, "mirrored") < error(&[], "not mirrored")
+        });
+    let problem = Problem::new(rig, &sequences, if mirrored { &copies } else { &[] }, fps);
+    let grid = grid(rig, options);
     let errors = problem.validate(&grid, reached, "grid");
     let best_of = |keep: &dyn Fn(&Candidate) -> bool| {
         let kept = grid.iter().zip(&errors).filter(|(candidate, error)| keep(candidate) && error.is_finite());
@@ -193,14 +201,14 @@ pub fn train_kept(
     let ends = if alignment == Alignment::InStep { OPEN } else { Ends::Closed };
     let mut forms = Vec::new();
     for candidate in per_joint.into_iter().chain(whole_body) {
-        let error = || held_out_error(&problem, &candidate, pairs, ends);
+        let error = || held_out_error(rig, &problem, &candidate, pairs, ends);
         forms.push((candidate, 100.0 * reached.number(&format!("form {candidate:?}"), error)?));
     }
     // The plain affine map, on the plain time warp, must be beaten clearly to be replaced.
-    let plain = if alignment == Alignment::InStep { sequences.clone() } else { plain_sequences(pairs)? };
-    let plain = Problem::new(&plain, &[], fps);
+    let plain = if alignment == Alignment::InStep { sequences.clone() } else { plain_sequences(rig, pairs)? };
+    let plain = Problem::new(rig, &plain, &[], fps);
     if options.form == FormChoice::Auto {
-        let error = || held_out_error(&plain, &AFFINE, pairs, ends);
+        let error = || held_out_error(rig, &plain, &AFFINE, pairs, ends);
         forms.push((AFFINE, 100.0 * reached.number("affine", error)?));
     }
     let best = *forms.iter().min_by(|a, b| a.1.total_cmp(&b.1)).ok_or(TrainError::Undetermined)?;
@@ -225,6 +233,7 @@ pub fn train_kept(
 
 /// Aligned RMS joint distance of what a candidate makes of the folds that it has not seen, root mean square of the pairs, m.
 fn held_out_error(
+    rig: &Rig,
     problem: &Problem,
     candidate: &Candidate,
     pairs: &[TrainPair],
@@ -234,7 +243,8 @@ fn held_out_error(
     let mut error = 0.0;
     for (pair, predicted) in pairs.iter().zip(&predicted) {
         let series = |values| Series::new(values, pair.source.channels());
-        let distance = || Ok(aligned_distance(series(predicted)?, series(&pair.target.positions)?, ends)?.rms);
+        let predicted = rig.positions(predicted);
+        let distance = || Ok(aligned_distance(series(&predicted)?, series(&pair.target.positions)?, ends)?.rms);
         error += distance().map_err(|error| pair.failed(error))?.powi(2) / pairs.len() as f64;
     }
     Ok(error.sqrt())
@@ -269,20 +279,22 @@ fn aligned(
     let sequences = |on: &dyn Fn(usize, &TrainPair) -> Result<Correspondence, AlignError>| {
         let of = |(index, pair): (usize, &TrainPair)| {
             let correspondence = on(index, pair).map_err(|error| pair.failed(error))?;
-            Ok(Sequence::new(&pair.source, &pair.target, &correspondence, groups[index]))
+            Ok(Sequence::new(rig, &pair.source, &pair.target, &correspondence, groups[index]))
         };
         pairs.iter().enumerate().map(of).collect::<Result<Vec<_>, TrainError>>()
     };
     let mut current = sequences(&|_, pair| correspond(way, &pair.source, &pair.target, rig, partners, fps))?;
     let quick = |sequences: &[Sequence]| {
-        let model = Problem::new(sequences, &[], fps).fit(&QUICK, "").ok_or(TrainError::Undetermined)?;
-        Ok::<_, TrainError>(pairs.iter().map(|pair| simulate(&model, &pair.source)).collect::<Vec<_>>())
+        let model = Problem::new(rig, sequences, &[], fps).fit(&QUICK, "").ok_or(TrainError::Undetermined)?;
+        Ok::<_, TrainError>(pairs.iter().map(|pair| rig.positions(&simulate(&model, &pair.source))).collect::<Vec<_>>())
     };
-    for _ in 0..REALIGNMENTS {
+    // Evenly performed motions of a machine are on one clock: a warp would only hide how fast its servos react.
+    let one_clock = way == Alignment::Uniform && !rig.frames().travels();
+    for _ in 0..if one_clock { 0 } else { REALIGNMENTS } {
         let styled = quick(&current)?;
         current = sequences(&|index, pair| correspond_output(way, &styled[index], &pair.target, fps))?;
     }
-    Ok((held_out_error(&Problem::new(&current, &[], fps), &JUDGE, pairs, Ends::Closed)?, current))
+    Ok((held_out_error(rig, &Problem::new(rig, &current, &[], fps), &JUDGE, pairs, Ends::Closed)?, current))
 }
 
 impl TrainPair {
@@ -309,21 +321,21 @@ fn baselines(pairs: &[TrainPair]) -> Result<Baselines, TrainError> {
         source.extend(from);
         target.extend(to);
     }
-    Ok(baseline::fit(&source, &target, pairs.first().map_or(0, |pair| pair.source.joints)))
+    Ok(baseline::fit(&source, &target, pairs.first().map_or(0, |pair| pair.source.channels / 3)))
 }
 
 /// Training sequences on the plain time warp: the mean match of each source frame, and the clips' average timing.
-fn plain_sequences(pairs: &[TrainPair]) -> Result<Vec<Sequence>, TrainError> {
+fn plain_sequences(rig: &Rig, pairs: &[TrainPair]) -> Result<Vec<Sequence>, TrainError> {
     let groups = groups(pairs);
     let of = |(pair, group): (&TrainPair, &usize)| {
         let on = correspond_plainly(&pair.source, &pair.target).map_err(|error| pair.failed(error))?;
-        Ok(Sequence::new(&pair.source, &pair.target, &on, *group))
+        Ok(Sequence::new(rig, &pair.source, &pair.target, &on, *group))
     };
     pairs.iter().zip(&groups).map(of).collect()
 }
 
 /// Everything that validation compares.
-fn grid(options: &TrainOptions) -> Vec<Candidate> {
+fn grid(rig: &Rig, options: &TrainOptions) -> Vec<Candidate> {
     let mut grid = Vec::new();
     let mut add = |coordinates: Option<usize>, poles: &[Poles], bases: &[Base], limit: usize| {
         for poles in poles.iter().filter(|p| p.states(coordinates.unwrap_or(3)) <= limit) {
@@ -343,7 +355,11 @@ fn grid(options: &TrainOptions) -> Vec<Candidate> {
     };
     if options.form != FormChoice::PerJoint {
         let limit = options.order.unwrap_or(WHOLE_BODY_ORDER);
-        let poles = [Poles::Static, Poles::Relaxation, Poles::Harmonics2, Poles::Harmonics3];
+        let mut poles = vec![Poles::Static, Poles::Relaxation, Poles::Harmonics2, Poles::Harmonics3];
+        if !rig.frames().travels() {
+            // A machine has no gait: its servos' own dynamics count, and there are few enough of them to find these from the data.
+            poles.extend([Poles::Identified(limit.min(24)), Poles::Identified(limit)]);
+        }
         for coordinates in [4, 8, 12] {
             add(Some(coordinates), &poles, &[Base::Mean, Base::Identity, Base::Channel, Base::Joint], limit);
         }

@@ -1,20 +1,20 @@
 //! An emotion pack: its strengths, and digests of what the host plays.
 
-use kinesic::emotion::EmotionState;
 use kinesic::model::{ATTRIBUTES, EmotionMeta};
 use kinesic::{LoadError, Pose};
 use serde::Serialize;
 
 use super::scene::{BodyData, CHECKED, digest};
 use super::{ViewError, ViewPack};
-use crate::emotion::play::Strengths;
-use crate::emotion::{HostEmotion, MAX_KEYS};
+use crate::emotion::HostEmotion;
+use crate::emotion::play::{HostState, Strengths, pose, seconds};
 use crate::rig::{MAX_JOINTS, Rig};
 
 /// How long the last pose of a motion that ends is shown, s.
 const STANDS: f32 = 1.0;
 
-type State = EmotionState<MAX_JOINTS, MAX_KEYS>;
+/// Frames that a page holds at most: half an hour at 60 per second.
+const MOST_FRAMES: f64 = 108_000.0;
 
 /// An emotion pack as the scripts read it.
 #[derive(Serialize)]
@@ -60,7 +60,11 @@ pub(super) fn data(of: &ViewPack) -> Result<EmotionData, ViewError> {
         true => CHECKED / 2,
         false => CHECKED.min((seconds(&model, &start) * rate) as usize) / 2,
     };
-    let played = |to: &Strengths| digest(&play(&model, rate, &start, frame, to), rig.joints());
+    let seconds = (!meta.cycle).then(|| longest(&model) + STANDS);
+    if let Some(frames) = seconds.map(|seconds| f64::from(seconds * rate)).filter(|frames| *frames > MOST_FRAMES) {
+        return Err(ViewError::Long { name: of.name.clone(), frames, most: MOST_FRAMES });
+    }
+    let played = |to: &Strengths| digest(&play(&model, &rig, &start, frame, to), rig.joints());
     let attributes = meta.attributes.iter().flatten().zip(start);
     let attributes = attributes.map(|(attribute, start)| AttributeData {
         name: attribute.name.to_owned(),
@@ -71,7 +75,7 @@ pub(super) fn data(of: &ViewPack) -> Result<EmotionData, ViewError> {
         body: BodyData::new(&of.name, &pack, of.file.bytes(), &rig),
         motion: meta.motion.to_owned(),
         attributes: attributes.collect(),
-        seconds: (!meta.cycle).then(|| longest(&model) + STANDS),
+        seconds,
         change: ChangeData { frame, strength: strong[..model.attributes()].to_vec() },
         digests: [&start, &strong].map(played),
     })
@@ -86,24 +90,14 @@ fn strengths(meta: &EmotionMeta, choose: impl Fn([f32; 2]) -> f32) -> Strengths 
     strengths
 }
 
-/// The first [`CHECKED`] frames, with other strengths from one on.
-fn play(model: &HostEmotion, rate: f32, start: &Strengths, change: usize, to: &Strengths) -> Vec<Pose<MAX_JOINTS>> {
-    let mut state = Box::new(State::new());
+/// The first [`CHECKED`] frames at the pack's rate, with other strengths from one on.
+fn play(model: &HostEmotion, rig: &Rig, start: &Strengths, change: usize, to: &Strengths) -> Vec<Pose<MAX_JOINTS>> {
+    let mut state = Box::new(HostState::new());
     let step = |frame| {
         state.strength = if frame < change { *start } else { *to };
-        let mut pose = Pose::identity();
-        model.step(&mut state, 1.0 / rate, &mut pose);
-        pose
+        pose(model, &rig.frames(), &mut state, model.frame_time())
     };
     (0..CHECKED).map(step).collect()
-}
-
-/// How long the motion, or a round of it, takes at strengths, s.
-fn seconds(model: &HostEmotion, strength: &Strengths) -> f32 {
-    let mut state = Box::new(State::new());
-    state.strength = *strength;
-    model.change(&mut state);
-    state.seconds()
 }
 
 /// The longest that the motion takes where every attribute is at an end or in the middle of its range, s.

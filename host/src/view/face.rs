@@ -116,7 +116,8 @@ impl<'p> FacePlayer<'p> {
             let edited = edit(&self.pack, &face.landmarks, Wish::Change(change));
             let edited = edited.map_err(|error| ViewError::Pack { name: self.name.to_owned(), error })?;
             let edited = edited.ok_or_else(not_one)?;
-            let warp = Warp::new(&face.landmarks, &edited.offsets).map_err(|_| not_one())?;
+            let warp = Warp::new(&face.landmarks, &edited.offsets)
+                .map_err(|error| ViewError::Warp { name: face.name.clone(), error })?;
             Ok((edited, warp))
         };
         let exact = changes.iter().map(|change| edited(*change)).collect::<Result<Vec<_>, _>>()?;

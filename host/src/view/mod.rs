@@ -3,6 +3,7 @@
 //! | file | holds |
 //! |---|---|
 //! | `mod` | what is shown, and the file |
+//! | `fill` | the page from its template: parts in one pass, names as text, a Content-Security-Policy |
 //! | `scene` | a pack on a clip: poses as the page reads them, and the digest of what the host makes of them |
 //! | `emotion` | an emotion pack: its strengths, and digests of what the host plays |
 //! | `face` | a face pack on a picture: landmarks, the picture's warps, and the digest of the host's landmarks |
@@ -14,10 +15,12 @@
 
 mod emotion;
 mod face;
+mod fill;
 mod scene;
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
+use fill::{escape, fill, inert, policy};
 use kinesic::LoadError;
 use serde::Serialize;
 
@@ -25,6 +28,7 @@ pub use face::ViewFace;
 use scene::hash;
 pub use scene::{CHECKED, STRENGTH, digest};
 
+use crate::face::warp::WarpError;
 use crate::pack::PackFile;
 use crate::prepare::{PrepareError, Source};
 use crate::rig::RigError;
@@ -116,6 +120,24 @@ pub enum ViewError {
         /// The picture.
         name: String,
     },
+    /// A motion is longer than a page can hold.
+    #[error("{name}: the motion has {frames:.0} frames, expected at most {most:.0}")]
+    Long {
+        /// The pack.
+        name: String,
+        /// Its frames.
+        frames: f64,
+        /// The most.
+        most: f64,
+    },
+    /// A pack moves the face in a way that no picture follows.
+    #[error("{name}: {error}")]
+    Warp {
+        /// The picture.
+        name: String,
+        /// Why.
+        error: WarpError,
+    },
     /// A clip cannot be put on a pack's skeleton.
     #[error(transparent)]
     Clip(#[from] PrepareError),
@@ -183,18 +205,57 @@ pub fn page(title: &str, made: &str, view: &View, wasm: &[u8]) -> Result<String,
     let bodies = data.packs.iter().map(|pack| &pack.body);
     data.joint = scene::first_joint(bodies.chain(data.emotions.iter().map(|pack| &pack.body)).next());
     let json = serde_json::to_string(&data).unwrap_or_else(|error| unreachable!("plain data has no JSON: {error}"));
-    // A script element ends at the first `</`, whatever it holds.
-    let json = json.replace("</", "<\\/");
-    let scripts = SCRIPTS.join("\n");
-    let parts = [("style", STYLE), ("made", &escape(made)), ("scripts", &scripts), ("data", &json)];
-    // The title may be in any part, so it goes first; the data last, for what is in it must not be taken for a mark.
-    let mut page = PAGE.replace("{{title}}", &escape(title));
-    for (mark, part) in parts {
-        page = page.replacen(&format!("{{{{{mark}}}}}"), part, 1);
-    }
-    Ok(page)
+    // As a browser reads them, whatever line ends the sources were checked out with: the policy holds their hashes.
+    let unix = |text: &str| text.replace("\r\n", "\n");
+    let script = unix(&format!("\n\"use strict\";\n{}\n", SCRIPTS.join("\n")));
+    let style = unix(&format!("\n{STYLE}\n"));
+    let parts = [
+        ("title", escape(title)),
+        ("policy", policy(&script, &style)),
+        ("style", style),
+        ("made", escape(made)),
+        ("data", inert(&json)),
+        ("script", script),
+    ];
+    Ok(fill(PAGE, &parts.each_ref().map(|(mark, part)| (*mark, part.as_str()))))
 }
 
-fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gait::{Manner, walk};
+    use crate::models;
+
+    /// Marks of the template, ends of elements, what opens a comment in a script.
+    const HOSTILE: &str = "{{data}}{{script}}</script><!--<script><img src=x onerror=PWN=1>\"'&";
+
+    #[test]
+    fn hostile_names_stay_text() {
+        let mut clip = walk(&Manner::NEUTRAL, 0.5, 60.0, 0.0, 1);
+        clip.skeleton.joints[3].name = HOSTILE.to_owned();
+        let map = crate::clip::JointMap::detect(&walk(&Manner::NEUTRAL, 0.5, 60.0, 0.0, 1).skeleton).unwrap();
+        let source = Source { path: HOSTILE.into(), clip, map, log: None };
+        let shown = View {
+            packs: vec![ViewPack { name: HOSTILE.to_owned(), file: models::weary() }],
+            clips: vec![ViewClip { name: HOSTILE.to_owned(), source, target: None }],
+            ..View::default()
+        };
+        let html = page(HOSTILE, HOSTILE, &shown, WASM).unwrap();
+        // The data: no `<` at all, and it says what it was given.
+        let (_, rest) = html.split_once("id=\"data\">").unwrap();
+        let (data, rest) = rest.split_once("</script>").unwrap();
+        assert!(!data.contains('<'));
+        let read: serde_json::Value = serde_json::from_str(data).unwrap();
+        assert_eq!([&read["packs"][0]["name"], &read["clips"][0]["name"]], [HOSTILE; 2]);
+        // The data is there once; the script behind it is the page's own, the one that the policy names.
+        assert_eq!(html.matches(data).count(), 1);
+        let (_, rest) = rest.split_once("<script>").unwrap();
+        let (script, rest) = rest.split_once("</script>").unwrap();
+        assert!(script.starts_with("\n\"use strict\";\n") && !script.contains("PWN") && !rest.contains("<script"));
+        let (_, style) = html.split_once("<style>").unwrap();
+        let (style, _) = style.split_once("</style>").unwrap();
+        assert!(html.contains(&format!("content=\"{}\"", policy(script, style))));
+        // Nothing hostile is an element, wherever it stands.
+        assert!(!html.contains("<img") && !html.contains("<!--"));
+    }
 }

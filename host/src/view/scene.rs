@@ -2,9 +2,9 @@
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
+use kinesic::engine::Controls;
 use kinesic::mechanics::Modulation;
 use kinesic::model::ModelMeta;
-use kinesic::pose::Controls;
 use kinesic::{LoadError, Pack, Pose};
 use serde::Serialize;
 
@@ -102,13 +102,13 @@ impl Engine {
         translator.or_else(components).or_else(mechanics)
     }
 
-    fn play(self, pack: &Pack, poses: &[HostPose], strength: f32) -> Result<Vec<HostPose>, LoadError> {
+    fn play(self, pack: &Pack, rig: &Rig, poses: &[HostPose], strength: f32) -> Result<Vec<HostPose>, LoadError> {
         let controls = Controls { strength, ..Controls::default() };
         match self {
             Self::Translator(_) => {
-                translate::play(pack, poses, &translate::Settings { controls, timing: Timing::Keep })
+                translate::play(pack, rig, poses, &translate::Settings { controls, timing: Timing::Keep })
             }
-            Self::Components(_) => components::play(pack, poses, &components::Settings { controls }),
+            Self::Components(_) => components::play(pack, rig, poses, &components::Settings { controls }),
             Self::Mechanics => {
                 let modulation = Modulation { amount: strength, ..Modulation::default() };
                 Ok(modulate(poses, &decouple(pack, poses)?, &modulation))
@@ -153,7 +153,7 @@ impl<'p> Player<'p> {
         let source = poses(&clip.source)?;
         let target = clip.target.as_ref().map(poses).transpose()?;
         let checked = source.get(..CHECKED).unwrap_or(&source);
-        let played = self.engine.play(&self.pack, checked, STRENGTH);
+        let played = self.engine.play(&self.pack, &self.rig, checked, STRENGTH);
         let played = played.map_err(|error| ViewError::Pack { name: self.name.to_owned(), error })?;
         let joints = self.rig.joints();
         let text = |poses: &[HostPose]| {

@@ -66,6 +66,9 @@ pub fn walk(rig: &Rig, frames: usize, energy: f64, stoop: f64) -> Clip {
         pose[8] = turn(-0.3 * stoop, -0.1 * s, 0.05 * (0.7 * phase).sin());
         pose[9] = turn(0.3 * s * energy, 0.6 * energy * s, -1.2 + 0.1 * energy * (2.0 * phase).sin());
         pose[11] = turn(0.3 * s * energy, 0.6 * energy * s, 1.2 - 0.1 * energy * (2.0 * phase).cos());
+        // Hands twist more the livelier the walk is.
+        pose[10] = turn(0.3 * energy, 0.2 * energy * c, 0.0);
+        pose[12] = turn(0.3 * energy, -0.2 * energy * c, 0.0);
         clip.root.push(Vector3::new(0.3 * t.sin(), 0.88 + 0.02 * (2.0 * phase).cos(), 1.2 * t));
         clip.rotations.extend(pose);
     }

@@ -4,29 +4,42 @@
 use std::path::Path;
 
 use faer::Mat;
-use kinesic::mechanics::{BodyMechanics, FEATURES};
+use kinesic::engine::{Engine, FromPack, Mix};
+use kinesic::mechanics::{Expression, FEATURES};
 use kinesic::model::{Kind, MechanicsMeta, ModelMeta};
-use kinesic::{Components, Emotion, LoadError, Pack, Pipeline, PipelineState, Pose, Translator};
+use kinesic::{Components, Emotion, LimitState, Limiter, Pipeline, PipelineState, Pose, Translator};
 use kinesic_host::clip::JointMap;
 use kinesic_host::components::{ComponentsModel, Factors};
 use kinesic_host::emotion::made;
-use kinesic_host::gait;
+use kinesic_host::gait::{self, Manner};
+use kinesic_host::limit::{JointLimit, LimitsModel};
 use kinesic_host::pack::{PackFile, PackWriter, Provenance};
 use kinesic_host::rig::Rig;
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::robot::{JOINTS, limits};
+use crate::robot::{JOINTS, RATE, ROWS, limits};
 
 const UNITS: usize = 24;
 const CODE: usize = 10;
 const COUNT: usize = 8;
 const KEYS: usize = 5;
 
-pub type Device<'a> = Pipeline<'a, JOINTS, 1024, { UNITS + 12 }, 20, COUNT, KEYS>;
-pub type State = PipelineState<JOINTS, 1024, 20, KEYS>;
+pub type Mechanics<'a> = Expression<'a, JOINTS, { UNITS + 12 }, 20>;
+pub type Translate<'a> = Translator<'a, ROWS, 1024>;
+pub type Restyle<'a> = Components<'a, ROWS, COUNT>;
+pub type Feel<'a> = Emotion<'a, ROWS, KEYS, COUNT>;
+pub type Limit<'a> = Limiter<'a, ROWS>;
 
-pub const ENGINES: [&str; 7] = [
-    "limit alone",
+/// The mean of what is there, then limits.
+pub type Engines<'a> =
+    (Mix<(Option<Mechanics<'a>>, Option<Translate<'a>>, Option<Restyle<'a>>, Option<Feel<'a>>)>, Limit<'a>);
+pub type Device<'a> = Pipeline<'a, Engines<'a>, ROWS>;
+pub type EngineState = <Engines<'static> as Engine<ROWS>>::State;
+pub type State = PipelineState<EngineState, ROWS>;
+
+pub const ENGINES: [&str; 8] = [
+    "limits alone",
+    "limits of hinges and chains",
     "translator, whole body",
     "translator, per joint",
     "body mechanics",
@@ -35,14 +48,33 @@ pub const ENGINES: [&str; 7] = [
     "pipeline",
 ];
 
-/// A new state with half of the expression: all of it would be the source itself.
+/// What of the mean an engine is: mechanics, translator, components, emotion, and the source.
+pub fn weights(engine: &str) -> ([f32; 4], f32) {
+    match engine {
+        "translator, whole body" | "translator, per joint" => ([0.0, 1.0, 0.0, 0.0], 0.0),
+        "body mechanics" => ([1.0, 0.0, 0.0, 0.0], 0.0),
+        "style components" => ([0.0, 0.0, 1.0, 0.0], 0.0),
+        "emotion" => ([0.0, 0.0, 0.0, 1.0], 0.0),
+        // In the pipeline the source counts, and the motion that looks at no frame plays along unseen.
+        "pipeline" => ([1.0, 1.0, 1.0, 0.0], 1.0),
+        _ => ([0.0; 4], 1.0),
+    }
+}
+
+/// A new state with half of the expression: all of it would be the source itself. The source cannot hold still.
 pub fn new_state(engine: &str) -> State {
     let mut state = State::new();
-    state.modulation.amount = 0.5;
-    // In the pipeline the source counts, and the motion that looks at no frame plays along unseen.
-    state.weights.emotion = if engine == "emotion" { 1.0 } else { 0.0 };
-    state.emotion.strength[0] = 0.5;
+    let (mix, _) = &mut state.engine;
+    (mix.weights, mix.source) = weights(engine);
+    mix.engines.0.modulation.amount = 0.5;
+    mix.engines.3.strength[0] = 0.5;
+    state.guard.frozen = 60;
     state
+}
+
+/// The limiter's memory.
+pub fn limit_state(state: &State) -> &LimitState<ROWS> {
+    &state.engine.1
 }
 
 /// A small generator: the same numbers everywhere.
@@ -73,49 +105,61 @@ pub struct Packs {
     pub mechanics: PackFile,
     pub components: PackFile,
     pub emotion: PackFile,
+    /// Every joint a ball, as in the packs of the engines.
+    pub balls: PackFile,
+    /// Hinges, chains and balls.
     pub limits: PackFile,
+}
+
+/// An engine of a pack that has it.
+pub fn engine<'a, E: FromPack<'a>>(file: &'a PackFile) -> E {
+    E::from_pack(&file.pack().unwrap()).unwrap()
 }
 
 impl Packs {
     pub fn new() -> Self {
-        let golden =
-            |name: &str| PackFile::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("packs/v1").join(name)).unwrap();
         Self {
             body: golden("translator-whole-body.kin"),
             joint: golden("translator-per-joint.kin"),
             mechanics: PackFile::from_bytes(&mechanics()),
             components: PackFile::from_bytes(&components()),
             emotion: PackFile::from_bytes(&emotion()),
+            balls: PackFile::from_bytes(&balls_pack()),
             limits: PackFile::from_bytes(&limits_pack()),
         }
     }
 
     pub fn device(&self, name: &str) -> Device<'_> {
-        self.load(name).unwrap()
+        let limits = if name == "limits of hinges and chains" { &self.limits } else { &self.balls };
+        let mut mix = (None, None, None, None);
+        let all = name == "pipeline";
+        if all || name == "body mechanics" {
+            mix.0 = Some(engine(&self.mechanics));
+        }
+        if all || name == "translator, whole body" {
+            mix.1 = Some(engine(&self.body));
+        }
+        if name == "translator, per joint" {
+            mix.1 = Some(engine(&self.joint));
+        }
+        if all || name == "style components" {
+            mix.2 = Some(engine(&self.components));
+        }
+        if all || name == "emotion" {
+            mix.3 = Some(engine(&self.emotion));
+        }
+        let limiter: Limit<'_> = engine(limits);
+        Device::new(*limiter.rig(), (Mix(mix), limiter)).unwrap()
     }
+}
 
-    fn load(&self, name: &str) -> Result<Device<'_>, LoadError> {
-        fn open(file: &PackFile) -> Result<Pack<'_>, LoadError> {
-            file.pack()
-        }
-        let limiter = kinesic::Limiter::load(&open(&self.limits)?)?;
-        let device = Device::new(limiter);
-        let (body, joint) = (open(&self.body)?, open(&self.joint)?);
-        let (mechanics, components, emotion) = (open(&self.mechanics)?, open(&self.components)?, open(&self.emotion)?);
-        match name {
-            "limit alone" => Ok(device),
-            "translator, whole body" => device.with_translator(Translator::load(&body)?),
-            "translator, per joint" => device.with_translator(Translator::load(&joint)?),
-            "body mechanics" => device.with_mechanics(BodyMechanics::load(&mechanics)?),
-            "style components" => device.with_components(Components::load(&components)?),
-            "emotion" => device.with_emotion(Emotion::load(&emotion)?),
-            _ => device
-                .with_translator(Translator::load(&body)?)?
-                .with_mechanics(BodyMechanics::load(&mechanics)?)?
-                .with_components(Components::load(&components)?)?
-                .with_emotion(Emotion::load(&emotion)?),
-        }
-    }
+/// The folder of the golden packs.
+pub fn golden_folder() -> std::path::PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("packs/v2")
+}
+
+pub fn golden(name: &str) -> PackFile {
+    PackFile::read(&golden_folder().join(name)).unwrap_or_else(|error| panic!("{error}"))
 }
 
 pub fn mechanics() -> Vec<u8> {
@@ -150,34 +194,52 @@ pub fn mechanics() -> Vec<u8> {
 pub fn components() -> Vec<u8> {
     let mut random = Random(7);
     let rig = rig();
-    let rest = [rig.poses(&rig.clip(&[Pose::identity()], 1.0 / 60.0))[0]];
-    let mean = rig.locals(&rest).positions;
+    let channels = 3 * rig.rows();
     let mut matrix =
         |rows: usize, columns: usize, size: f32| Mat::from_fn(rows, columns, |_, _| f64::from(size * random.unit()));
-    let (directions, change) = (matrix(3 * JOINTS, COUNT, 0.5), matrix(3 * JOINTS, COUNT, 0.1));
+    let (directions, change) = (matrix(channels, COUNT, 0.5), matrix(channels, COUNT, 0.1));
     let weights = matrix(10, COUNT, 1.0);
+    // The root's height is about that of a person, everything else about 0.
+    let mean = (0..channels).map(|at| if at == 1 { 0.95 } else { 0.0 }).collect();
     let model = ComponentsModel {
         style: "made".to_owned(),
         frame_rate: 60.0,
-        shift: vec![0.01; mean.len()],
         mean,
-        scale: 0.1,
+        // Travel is in metres per frame.
+        shift: (0..channels).map(|at| if at < 3 { 0.001 } else { 0.01 }).collect(),
+        scale: (0..channels).map(|at| if at < 3 { 0.01 } else { 0.1 }).collect(),
         learned: &directions + &change,
         content: Factors { weights, components: directions },
         track: vec![[0.0, 0.02, 0.0, 1.0]; 10],
-        reference: vec![[0.0, 0.0, 0.0, 1.0]; JOINTS],
         strength: [0.0, 1.0],
     };
     model.pack(&rig, &Provenance::default())
 }
 
+/// A made walk, neutral and weary, on balls like the other engines.
 pub fn emotion() -> Vec<u8> {
-    let (model, rig) = made::sized(1, [KEYS, COUNT, 3]);
-    model.pack(&rig, &Provenance::default())
+    const FPS: f64 = 480.0;
+    let rig = rig();
+    let moments = [Manner::NEUTRAL, Manner::WEARY].map(|manner| -> Vec<made::Moment> {
+        let seconds = 1.0 / manner.cadence;
+        let poses = rig.poses(&gait::walk(&manner, seconds + 0.1, FPS, 0.0, 1));
+        let frame = |key: usize| (seconds * FPS * key as f64 / (KEYS - 1) as f64).round() as usize;
+        (0..KEYS).map(|key| (frame(key) as f64 / FPS, poses[frame(key)])).collect()
+    });
+    made::over(&rig, &moments, [COUNT, 3]).pack(&rig, &Provenance::default())
 }
 
 pub fn limits_pack() -> Vec<u8> {
-    limits().pack(&rig(), &Provenance::default())
+    limits().pack(&rig(), &Provenance::default()).unwrap()
+}
+
+/// Limits for engines on balls, which keep their references: all joints but the hips are bounded.
+pub fn balls_pack() -> Vec<u8> {
+    let mut model = LimitsModel::free("balls", f64::from(RATE), &rig(), 6.0, 60.0);
+    for limit in model.joints.iter_mut().skip(1) {
+        *limit = JointLimit::ball([-0.9, -0.7, -0.8], [1.2, 0.7, 1.0], 7.0, 90.0);
+    }
+    model.pack(&rig(), &Provenance::default()).unwrap()
 }
 
 /// Random valid input that goes on for ever: every joint turns about an axis of its own, at speeds that change, along a path.

@@ -72,12 +72,12 @@ fn packs() -> Vec<(&'static str, Vec<u8>)> {
     packs.push(("components.kin", trained.model.pack(&rig, &origin)));
     let (model, rig) = kinesic_host::emotion::made::sized(1, [3, 2, 2]);
     packs.push(("emotion.kin", model.pack(&rig, &origin)));
-    let mut limits = LimitsModel::free("seed", 60.0, rig.joints(), 6.0, 60.0);
+    let mut limits = LimitsModel::free("seed", 60.0, &rig, 6.0, 60.0);
     let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
     limits.joints[1] = JointLimit::hinge(x, [-0.1, 2.3], 9.0, 110.0);
     limits.joints[2] = JointLimit::chain([x, y, z], [-1.6; 3], [1.3; 3], 7.0, 90.0);
-    limits.joints[3] = JointLimit::ball([y, z, x], [-0.7; 3], [0.9; 3], 5.0, 60.0);
-    packs.push(("limits.kin", limits.pack(&rig, &origin)));
+    limits.joints[3] = JointLimit::ball([-0.7; 3], [0.9; 3], 5.0, 60.0);
+    packs.push(("limits.kin", limits.pack(&rig, &origin).unwrap()));
     packs
 }
 

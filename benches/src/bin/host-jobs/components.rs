@@ -5,7 +5,7 @@ use std::error::Error;
 use faer::{Mat, MatRef};
 use kinesic_benches::made;
 use kinesic_benches::measure::{peak_mib, timed};
-use kinesic_host::components::{Bone, Objective, Optimiser, Sparsity, Weights, learn, noise, sparse};
+use kinesic_host::components::{Objective, Optimiser, Sparsity, Weights, learn, noise, sparse};
 use serde_json::{Value, json};
 
 const FRAMES: f64 = 200.0;
@@ -24,10 +24,7 @@ pub fn factorise(scale: f64) -> Result<Value, Box<dyn Error>> {
 pub fn learn_style(scale: f64) -> Result<Value, Box<dyn Error>> {
     let [content, style] =
         [21, 23].map(|seed| sparse(motion(scale, seed).as_ref(), COUNT, &Sparsity::default()).factors);
-    let bones: Vec<Bone> =
-        (1..CHANNELS / 3).map(|child| Bone { joints: [(child - 1) / 2, child], length: 1.0 }).collect();
-    let mean: Vec<f64> = (0..CHANNELS).map(|channel| (channel as f64).sin()).collect();
-    let objective = Objective::new(&content, &style, &bones, &mean, 1.0, Weights::default());
+    let objective = Objective::new(&content, &style, Weights::default());
     let how = Optimiser { max_steps: STEPS, threshold: -1.0, ..Optimiser::default() };
     let (seconds, learned) = timed(|| learn(&objective, noise(CHANNELS, COUNT, 1), &how));
     Ok(json!({

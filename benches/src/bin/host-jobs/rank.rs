@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::path::Path;
 
-use kinesic_host::emotion::{Pairs, RankOptions, Samples, choose_cost, pair_accuracy, rank};
+use kinesic_host::learn::{Pairs, RankOptions, Samples, choose_cost, pair_accuracy, rank};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use serde_json::{Value, json};

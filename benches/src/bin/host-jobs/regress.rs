@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::path::Path;
 
-use kinesic_host::emotion::{RegressOptions, Samples, regress};
+use kinesic_host::learn::{RegressOptions, Samples, regress};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use serde_json::{Value, json};

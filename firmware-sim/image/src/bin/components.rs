@@ -2,4 +2,4 @@
 #![no_std]
 #![no_main]
 
-kinesic_image::image!(kinesic_image::workloads::components::Restyle, "components.kin");
+kinesic_image::image!(kinesic_image::workloads::posed::Restyle, "components.kin");

@@ -2,4 +2,4 @@
 #![no_std]
 #![no_main]
 
-kinesic_image::image!(kinesic_image::workloads::limit::Limit, "limit.kin");
+kinesic_image::image!(kinesic_image::workloads::posed::Limit, "limit.kin");

@@ -2,4 +2,4 @@
 #![no_std]
 #![no_main]
 
-kinesic_image::image!(kinesic_image::workloads::pipeline::Whole, "pipeline-int.kin");
+kinesic_image::image!(kinesic_image::workloads::posed::Whole, "pipeline-int.kin");

@@ -2,4 +2,4 @@
 #![no_std]
 #![no_main]
 
-kinesic_image::image!(kinesic_image::workloads::pipeline::Whole, "pipeline.kin");
+kinesic_image::image!(kinesic_image::workloads::posed::Whole, "pipeline.kin");

@@ -1,5 +1,5 @@
-//! Style translation, 31 joints, trained on recorded clips, one model a joint.
+//! Style translation, 31 joints, trained on recorded clips, one model per joint.
 #![no_std]
 #![no_main]
 
-kinesic_image::image!(kinesic_image::workloads::translator::Recorded, "recorded.kin");
+kinesic_image::image!(kinesic_image::workloads::posed::Recorded, "recorded.kin");

@@ -2,4 +2,4 @@
 #![no_std]
 #![no_main]
 
-kinesic_image::image!(kinesic_image::workloads::translator::WholeBodyFixed, "translator-body-i16.kin");
+kinesic_image::image!(kinesic_image::workloads::posed::WholeBodyFixed, "translator-body-i16.kin");

@@ -2,4 +2,4 @@
 #![no_std]
 #![no_main]
 
-kinesic_image::image!(kinesic_image::workloads::translator::WholeBody, "translator-body.kin");
+kinesic_image::image!(kinesic_image::workloads::posed::WholeBody, "translator-body.kin");

@@ -1,5 +1,5 @@
-//! Style translation in fixed point, 25 joints, one model of order 40 a joint.
+//! Style translation in fixed point, 25 joints, one model of order 40 per joint.
 #![no_std]
 #![no_main]
 
-kinesic_image::image!(kinesic_image::workloads::translator::PerJointFixed, "translator-i16.kin");
+kinesic_image::image!(kinesic_image::workloads::posed::PerJointFixed, "translator-i16.kin");

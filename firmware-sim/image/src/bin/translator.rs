@@ -1,5 +1,5 @@
-//! Style translation, 25 joints, one model of order 40 a joint.
+//! Style translation, 25 joints, one model of order 40 per joint.
 #![no_std]
 #![no_main]
 
-kinesic_image::image!(kinesic_image::workloads::translator::PerJoint, "translator.kin");
+kinesic_image::image!(kinesic_image::workloads::posed::PerJoint, "translator.kin");

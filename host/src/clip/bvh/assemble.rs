@@ -5,10 +5,9 @@ use nalgebra::{UnitQuaternion, Vector3};
 use super::fields::Channel;
 use super::hierarchy::RawJoint;
 use super::motion::Motion;
-use super::{ParseError, euler, orient};
-use crate::clip::map::{Canonical, JointMap};
-use crate::clip::units::{Unit, measure_leg};
-use crate::clip::{Clip, Joint, ReadOptions, Skeleton, UpAxis};
+use super::{ParseError, euler, orient, spikes};
+use crate::clip::map::JointMap;
+use crate::clip::{Clip, Joint, ReadOptions, Skeleton, measure};
 
 /// A position track or bone that moves by less is at rest, m.
 pub(super) const STILL: f64 = 1e-3;
@@ -28,59 +27,42 @@ pub(super) struct Draft {
     pub rotations: Vec<UnitQuaternion<f64>>,
     pub frames: usize,
     pub notes: Vec<String>,
+    /// The file's OFFSETs, file units.
+    offsets: Vec<Vector3<f64>>,
 }
 
-pub(super) fn clip(raw: Vec<RawJoint>, motion: Motion, options: &ReadOptions) -> Result<Clip, ParseError> {
+pub(super) fn clip(
+    raw: Vec<RawJoint>,
+    motion: Motion,
+    options: &ReadOptions,
+    notes: Vec<String>,
+) -> Result<Clip, ParseError> {
     let frame_time = motion.frame_time;
     let mut draft = Draft::new(raw, motion);
+    draft.relative_positions();
     let skeleton = Skeleton { joints: std::mem::take(&mut draft.joints) };
     let map = joint_map(&skeleton, options)?;
-    let (unit, note) = unit(&skeleton, map.as_ref(), options)?;
-    let pelvis = map.as_ref().and_then(|m| m.joint(Canonical::Pelvis));
+    let unit = measure::unit(&skeleton, map.as_ref(), options, &mut draft.notes)?;
     draft.joints = skeleton.joints;
-    draft.notes.push(note);
+    draft.notes.extend(notes);
     draft.scale(unit.metres());
-    draft.fold_root(pelvis);
+    draft.fold_root(map.as_ref());
     draft.note_tracks();
 
     let mut clip = draft.finish(frame_time);
+    spikes::mend(&mut clip, options.repair);
     let map = joint_map(&clip.skeleton, options)?;
-    let up: Option<UpAxis> = options.up.or(options.map.as_ref().and_then(|m| m.up));
-    orient::turn_up(&mut clip, map.as_ref(), up);
+    measure::note_names(&mut clip, map.as_ref(), options);
+    orient::turn(&mut clip, map.as_ref(), options);
     orient::note_floor(&mut clip);
     orient::note_rest_frame(&mut clip);
+    measure::note_size(&mut clip, map.as_ref());
     Ok(clip)
 }
 
-/// The caller's map, which must fit, or a known layout, which may not.
+/// The caller's map where it fits, or a known layout, which may not.
 fn joint_map(skeleton: &Skeleton, options: &ReadOptions) -> Result<Option<JointMap>, ParseError> {
-    match &options.map {
-        Some(map) => Ok(Some(map.resolve(skeleton)?)),
-        None => Ok(JointMap::detect(skeleton)),
-    }
-}
-
-fn unit(skeleton: &Skeleton, map: Option<&JointMap>, options: &ReadOptions) -> Result<(Unit, String), ParseError> {
-    if let Some(unit) = options.units {
-        return Ok((unit, format!("Units: {unit}, as given.")));
-    }
-    if let Some(unit) = options.map.as_ref().and_then(|m| m.units) {
-        return Ok((unit, format!("Units: {unit}, from the skeleton map.")));
-    }
-    let (leg, measured) = measure_leg(skeleton, map);
-    match Unit::detect(leg) {
-        Some(unit) => {
-            let metres = leg * unit.metres();
-            Ok((
-                unit,
-                format!(
-                    "Units: {unit} assumed (1 unit = {} m): {measured} makes a leg of {metres:.2} m.",
-                    unit.metres()
-                ),
-            ))
-        }
-        None => Err(ParseError::UnknownUnits(measured)),
-    }
+    Ok(JointMap::choose(skeleton, options.map.as_ref())?)
 }
 
 impl Draft {
@@ -98,6 +80,7 @@ impl Draft {
                     match *channel {
                         Channel::Position(axis) => (position[axis], moved) = (value, true),
                         Channel::Rotation(axis) => rotation *= euler::about_axis(axis, value),
+                        Channel::Unused(_) => {}
                     }
                 }
                 if moved {
@@ -107,13 +90,33 @@ impl Draft {
             }
         }
         let tracks: Vec<Option<Track>> = raw.iter().zip(positions).map(|(j, p)| Track::new(p, j.offset)).collect();
+        let offsets = raw.iter().map(|j| j.offset).collect();
         let joints = raw.into_iter().zip(&tracks).map(|(j, track)| Joint {
             name: j.name,
             parent: j.parent,
             offset: track.as_ref().map_or(j.offset, Track::mean),
             end: j.end,
         });
-        Draft { joints: joints.collect(), tracks, rotations, frames, notes: Vec::new() }
+        Draft { joints: joints.collect(), tracks, rotations, frames, notes: Vec::new(), offsets }
+    }
+
+    /// Position channels that hold 0 on every joint below the root mean the OFFSETs: a body has bones.
+    fn relative_positions(&mut self) {
+        let tracked: Vec<usize> = (1..self.joints.len()).filter(|&j| self.tracks[j].is_some()).collect();
+        let zero = |t: &Option<Track>| t.as_ref().is_some_and(|t| t.positions.iter().all(|p| *p == Vector3::zeros()));
+        let shifted = |t: &Option<Track>| t.as_ref().is_some_and(|t| t.shift > 0.0);
+        if !tracked.iter().all(|&j| zero(&self.tracks[j])) || !tracked.iter().any(|&j| shifted(&self.tracks[j])) {
+            return;
+        }
+        for &joint in &tracked {
+            self.joints[joint].offset = self.offsets[joint];
+            self.tracks[joint] = None;
+        }
+        self.notes.push(format!(
+            "Position channels replace the OFFSET, and those of {} joints are 0 throughout, which would make bones of length 0: \
+             the OFFSETs are kept.",
+            tracked.len()
+        ));
     }
 
     fn scale(&mut self, factor: f64) {

@@ -1,21 +1,5 @@
 //! Walks over BVH text word by word and knows the line.
 
-use super::fault::BvhFault;
-
-/// The bytes as text, without byte-order mark.
-pub(super) fn text(bytes: &[u8]) -> Result<&str, BvhFault> {
-    // A zero byte is valid UTF-8, but in practice means UTF-16 or a binary file.
-    let fault = |at: usize| BvhFault::NotText {
-        line: 1 + bytes.iter().take(at).filter(|&&b| b == b'\n').count(),
-        byte: bytes.get(at).copied().unwrap_or(0),
-    };
-    if let Some(at) = bytes.iter().position(|&b| b == 0) {
-        return Err(fault(at));
-    }
-    let text = std::str::from_utf8(bytes).map_err(|e| fault(e.valid_up_to()))?;
-    Ok(text.strip_prefix('\u{feff}').unwrap_or(text))
-}
-
 /// A place in the text. Words end at white space; a brace is a word of its own.
 #[derive(Clone, Copy)]
 pub(super) struct Cursor<'a> {

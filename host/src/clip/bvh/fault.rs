@@ -18,14 +18,10 @@ pub enum BvhFault {
     MissingHierarchy { line: usize, found: String },
     #[error("line {line}: expected ROOT and a name after HIERARCHY, found '{found}'. Name the first joint with ROOT")]
     MissingRoot { line: usize, found: String },
-    #[error(
-        "line {line}: a second ROOT '{found}'; one skeleton per file is read. Put each figure in a file of its own"
-    )]
-    SecondRoot { line: usize, found: String },
+    #[error("there is no ROOT '{name}'; the file has: {roots}. Name one of them with --root")]
+    NoSuchRoot { name: String, roots: String },
     #[error("line {line}: {keyword} without a name. Write the joint's name after the keyword")]
     NoName { line: usize, keyword: &'static str },
-    #[error("line {line}: the joint name '{name}' was used on line {first} already. Rename one of them")]
-    DuplicateName { line: usize, name: String, first: usize },
     #[error("line {line}: expected '{{' after joint '{joint}', found '{found}'. Check the braces")]
     MissingBrace { line: usize, joint: String, found: String },
     #[error(
@@ -50,19 +46,15 @@ pub enum BvhFault {
     OffsetCount { line: usize, joint: String, found: usize },
     #[error("line {line}: OFFSET of joint '{joint}': '{found}' is not a finite number. Write it like 12.5 or 1.25e1")]
     OffsetNumber { line: usize, joint: String, found: String },
-    #[error(
-        "line {line}: joint '{joint}' has no CHANNELS. Add 'CHANNELS 3 Zrotation Xrotation Yrotation', or 'CHANNELS 0'"
-    )]
-    MissingChannels { line: usize, joint: String },
     #[error("line {line}: joint '{joint}' has CHANNELS twice. Remove one")]
     SecondChannels { line: usize, joint: String },
-    #[error("line {line}: CHANNELS of joint '{joint}': '{found}' is not a count from 0 to 6")]
+    #[error("line {line}: CHANNELS of joint '{joint}': '{found}' is not a count from 0 to 9")]
     ChannelCount { line: usize, joint: String, found: String },
     #[error("line {line}: CHANNELS of joint '{joint}' announces {announced} channels, found {found}. Make both agree")]
     ChannelMismatch { line: usize, joint: String, announced: usize, found: usize },
     #[error(
         "line {line}: joint '{joint}' has an unknown channel '{found}'. Known: Xposition Yposition Zposition Xrotation \
-             Yrotation Zrotation"
+             Yrotation Zrotation, and Xscale Yscale Zscale, which are left out"
     )]
     UnknownChannel { line: usize, joint: String, found: String },
     #[error("line {line}: joint '{joint}' lists channel '{found}' twice. Remove one")]
@@ -86,7 +78,7 @@ pub enum BvhFault {
     NoChannels,
     #[error("line {line}: expected 'Frames: N' after MOTION, found '{found}'")]
     MissingFrames { line: usize, found: String },
-    #[error("line {line}: 'Frames: {found}': expected a whole number of at least 1")]
+    #[error("line {line}: 'Frames: {found}': expected a whole number, the count of frames")]
     FrameCount { line: usize, found: String },
     #[error("line {line}: expected 'Frame Time: seconds', found '{found}'")]
     MissingFrameTime { line: usize, found: String },
@@ -110,9 +102,4 @@ pub enum BvhFault {
              The file is cut off, or the count is wrong"
     )]
     FewerFrames { line: usize, declared: usize, declared_line: usize, found: usize },
-    #[error(
-        "line {line}: more frames than the {declared} that line {declared_line} declares. Correct 'Frames:', or remove \
-             the rest"
-    )]
-    MoreFrames { line: usize, declared: usize, declared_line: usize },
 }

@@ -12,15 +12,20 @@ pub(super) enum Channel {
     Position(usize),
     /// Rotation about axis 0, 1 or 2, in degrees.
     Rotation(usize),
+    /// A number that no pose needs: the scale along axis 0, 1 or 2, or (3) whatever an End Site has.
+    Unused(usize),
 }
 
-const CHANNELS: [(&str, Channel); 6] = [
+const CHANNELS: [(&str, Channel); 9] = [
     ("Xposition", Channel::Position(0)),
     ("Yposition", Channel::Position(1)),
     ("Zposition", Channel::Position(2)),
     ("Xrotation", Channel::Rotation(0)),
     ("Yrotation", Channel::Rotation(1)),
     ("Zrotation", Channel::Rotation(2)),
+    ("Xscale", Channel::Unused(0)),
+    ("Yscale", Channel::Unused(1)),
+    ("Zscale", Channel::Unused(2)),
 ];
 
 impl Channel {
@@ -35,7 +40,7 @@ impl Channel {
 
 /// Whether a word ends a list of numbers or channels.
 fn is_keyword(word: &str) -> bool {
-    const KEYWORDS: [&str; 8] = ["{", "}", "OFFSET", "CHANNELS", "JOINT", "END", "MOTION", "ROOT"];
+    const KEYWORDS: [&str; 9] = ["{", "}", "OFFSET", "CHANNELS", "JOINT", "END", "ENDSITE", "MOTION", "ROOT"];
     KEYWORDS.iter().any(|k| word.eq_ignore_ascii_case(k))
 }
 
@@ -66,7 +71,7 @@ pub(super) fn offset(cursor: &mut Cursor<'_>, line: usize, joint: &str) -> Resul
 /// The announced number of known channels, each once.
 pub(super) fn channels(cursor: &mut Cursor<'_>, line: usize, joint: &str) -> Result<Vec<Channel>, BvhFault> {
     let count = cursor.peek().filter(|w| !is_keyword(w)).unwrap_or("");
-    let Some(announced) = count.parse::<usize>().ok().filter(|&n| n <= 6) else {
+    let Some(announced) = count.parse::<usize>().ok().filter(|&n| n <= 9) else {
         return Err(BvhFault::ChannelCount { line, joint: joint.into(), found: count.into() });
     };
     cursor.word();
@@ -90,8 +95,9 @@ pub(super) fn channels(cursor: &mut Cursor<'_>, line: usize, joint: &str) -> Res
     Ok(list)
 }
 
-/// `Site { OFFSET x y z }`; the word after End is not looked at, some files give the tip a name.
-pub(super) fn end_site(cursor: &mut Cursor<'_>, joint: &str) -> Result<Vector3<f64>, BvhFault> {
+/// `Site { OFFSET x y z }`, and how many channels it announces; the word after End is not looked at, some files give the tip a
+/// name.
+pub(super) fn end_site(cursor: &mut Cursor<'_>, joint: &str) -> Result<(Vector3<f64>, usize), BvhFault> {
     let broken = |cursor: &Cursor<'_>, found: Option<&str>| BvhFault::BrokenEndSite {
         line: cursor.line(),
         joint: joint.into(),
@@ -104,9 +110,15 @@ pub(super) fn end_site(cursor: &mut Cursor<'_>, joint: &str) -> Result<Vector3<f
             return Err(broken(cursor, word));
         }
     }
-    let tip = offset(cursor, cursor.line(), &format!("{joint} (End Site)"))?;
+    let name = format!("{joint} (End Site)");
+    let tip = offset(cursor, cursor.line(), &name)?;
+    let mut unused = 0;
+    if cursor.peek().is_some_and(|w| w.eq_ignore_ascii_case("CHANNELS")) {
+        cursor.word();
+        unused = channels(cursor, cursor.line(), &name)?.len();
+    }
     match cursor.word() {
-        Some("}") => Ok(tip),
+        Some("}") => Ok((tip, unused)),
         word => Err(broken(cursor, word)),
     }
 }

@@ -1,6 +1,7 @@
 //! Choosing the clip's root: below resting scene roots, the joint that travels.
 
 use super::assemble::{Draft, STILL, Track};
+use crate::clip::map::{Canonical, JointMap};
 
 /// A rotation that turns by less is at rest, rad.
 const STILL_ANGLE: f64 = 1e-3;
@@ -19,15 +20,19 @@ impl Draft {
     }
 
     /// Makes the joint that travels, or the pelvis, the root; see the [module's text](super).
-    pub fn fold_root(&mut self, pelvis: Option<usize>) {
+    pub fn fold_root(&mut self, map: Option<&JointMap>) {
         let carrier = self.carrier();
         let still_above = (0..carrier).all(|i| self.is_still(i));
-        let target = match pelvis {
-            Some(pelvis) if self.is_lone_chain(pelvis) => pelvis,
-            Some(pelvis) => {
-                let (root, pelvis) = (&self.joints[0].name, &self.joints[pelvis].name);
-                self.notes.push(format!("The pelvis '{pelvis}' is not the root: '{root}' carries other joints too."));
-                return;
+        let target = match map.and_then(|m| Some((m, m.joint(Canonical::Pelvis)?))) {
+            Some((map, pelvis)) => {
+                let Some(depth) = self.lone(pelvis, map) else {
+                    let (root, pelvis) = (&self.joints[0].name, &self.joints[pelvis].name);
+                    self.notes.push(format!(
+                        "The pelvis '{pelvis}' is not the root: '{root}' carries other joints of the body too."
+                    ));
+                    return;
+                };
+                depth
             }
             None if still_above => carrier,
             None => 0,
@@ -37,6 +42,46 @@ impl Draft {
             self.fold_once();
             let what = if still { "stays still" } else { "moves too; both motions were composed" };
             self.notes.push(format!("'{}' became the root; '{above}' above it {what}.", self.joints[0].name));
+        }
+    }
+
+    /// How deep the pelvis is, once the joints beside it that are no part of the body are left out (targets of inverse kinematics,
+    /// cameras, props); none where the body hangs on several of them.
+    fn lone(&mut self, pelvis: usize, map: &JointMap) -> Option<usize> {
+        let mut chain = vec![pelvis];
+        while let Some(parent) = chain.last().and_then(|&j| self.joints[j].parent) {
+            chain.push(parent);
+        }
+        let mut below = vec![false; self.joints.len()];
+        for j in 0..self.joints.len() {
+            below[j] = j == pelvis || self.joints[j].parent.is_some_and(|p| below[p]);
+        }
+        let keep: Vec<bool> = (0..self.joints.len()).map(|j| below[j] || chain.contains(&j)).collect();
+        if Canonical::ALL.iter().filter_map(|&c| map.joint(c)).any(|j| !keep[j]) {
+            return None;
+        }
+        self.leave_out(&keep);
+        Some(chain.len() - 1)
+    }
+
+    fn leave_out(&mut self, keep: &[bool]) {
+        if keep.iter().all(|&k| k) {
+            return;
+        }
+        let left: Vec<&str> =
+            self.joints.iter().zip(keep).filter(|(_, k)| !**k).map(|(j, _)| j.name.as_str()).collect();
+        let shown = left.iter().take(5).copied().collect::<Vec<_>>().join("', '");
+        let more = if left.len() > 5 { ", ..." } else { "" };
+        self.notes.push(format!("{} joint(s) beside the pelvis are left out: '{shown}'{more}.", left.len()));
+        let mut columns = keep.iter().cycle();
+        self.rotations.retain(|_| columns.next() == Some(&true));
+        let index: Vec<usize> = (0..keep.len()).map(|j| keep[..j].iter().filter(|k| **k).count()).collect();
+        let mut flags = keep.iter();
+        self.joints.retain(|_| flags.next() == Some(&true));
+        let mut flags = keep.iter();
+        self.tracks.retain(|_| flags.next() == Some(&true));
+        for joint in &mut self.joints {
+            joint.parent = joint.parent.map(|p| index[p]);
         }
     }
 

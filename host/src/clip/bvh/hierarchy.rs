@@ -19,6 +19,12 @@ pub(super) struct RawJoint {
     pub channels: Vec<Channel>,
 }
 
+/// The joints of a file, and what was made of its oddities.
+pub(super) struct Hierarchy {
+    pub joints: Vec<RawJoint>,
+    pub notes: Vec<String>,
+}
+
 /// A joint whose closing brace has not come yet.
 struct Open {
     joint: usize,
@@ -28,12 +34,36 @@ struct Open {
 }
 
 /// Reads up to and including the keyword MOTION.
-pub(super) fn parse(cursor: &mut Cursor<'_>) -> Result<Vec<RawJoint>, BvhFault> {
+pub(super) fn parse(cursor: &mut Cursor<'_>) -> Result<Hierarchy, BvhFault> {
     start(cursor)?;
     let mut joints: Vec<RawJoint> = Vec::new();
     let mut names: HashMap<String, usize> = HashMap::new();
+    let mut notes = Vec::new();
+    loop {
+        figure(cursor, &mut joints, &mut names, &mut notes)?;
+        match cursor.word() {
+            Some(word) if word.eq_ignore_ascii_case("MOTION") => return Ok(Hierarchy { joints, notes }),
+            Some(word) if word.eq_ignore_ascii_case("ROOT") => {}
+            Some("}") => return Err(BvhFault::ExtraBrace { line: cursor.line() }),
+            Some(word) => {
+                return Err(BvhFault::MissingMotion { line: cursor.line(), found: format!("'{word}'") });
+            }
+            None => {
+                return Err(BvhFault::MissingMotion { line: cursor.line(), found: "the end of the file".into() });
+            }
+        }
+    }
+}
+
+/// One ROOT with everything below it; the keyword was taken.
+fn figure(
+    cursor: &mut Cursor<'_>,
+    joints: &mut Vec<RawJoint>,
+    names: &mut HashMap<String, usize>,
+    notes: &mut Vec<String>,
+) -> Result<(), BvhFault> {
     let mut open: Vec<Open> = Vec::new();
-    open_joint(cursor, "ROOT", &mut joints, &mut names, &mut open)?;
+    open_joint(cursor, "ROOT", joints, names, &mut open, notes)?;
     // An explicit stack: nesting depth is the file's choice and must not be ours.
     while let Some(top) = open.last_mut() {
         let joint = top.joint;
@@ -57,9 +87,15 @@ pub(super) fn parse(cursor: &mut Cursor<'_>) -> Result<Vec<RawJoint>, BvhFault> 
                 top.channels = true;
                 joints[joint].channels = fields::channels(cursor, line, &joints[joint].name)?;
             }
-            "JOINT" => open_joint(cursor, "JOINT", &mut joints, &mut names, &mut open)?,
-            "END" => {
-                let tip = fields::end_site(cursor, &joints[joint].name)?;
+            "JOINT" => open_joint(cursor, "JOINT", joints, names, &mut open, notes)?,
+            "END" | "ENDSITE" => {
+                let (tip, unused) = fields::end_site(cursor, &joints[joint].name)?;
+                if unused > 0 {
+                    notes.push(format!("The End Site of '{}' has channels, which are left out.", joints[joint].name));
+                }
+                // Its numbers stand behind those of the joints before it.
+                let last = joints.len() - 1;
+                joints[last].channels.extend(std::iter::repeat_n(Channel::Unused(3), unused));
                 // Only the first tip is kept: one is all that a pose needs.
                 joints[joint].end.get_or_insert(tip);
             }
@@ -68,7 +104,7 @@ pub(super) fn parse(cursor: &mut Cursor<'_>) -> Result<Vec<RawJoint>, BvhFault> 
                     return Err(BvhFault::MissingOffset { line: top.line, joint: name() });
                 }
                 if !top.channels {
-                    return Err(BvhFault::MissingChannels { line: top.line, joint: name() });
+                    notes.push(format!("Joint '{}' has no CHANNELS: taken as rigid.", name()));
                 }
                 open.pop();
             }
@@ -81,15 +117,7 @@ pub(super) fn parse(cursor: &mut Cursor<'_>) -> Result<Vec<RawJoint>, BvhFault> 
             }
         }
     }
-    match cursor.word() {
-        Some(word) if word.eq_ignore_ascii_case("MOTION") => Ok(joints),
-        Some(word) if word.eq_ignore_ascii_case("ROOT") => {
-            Err(BvhFault::SecondRoot { line: cursor.line(), found: cursor.name().into() })
-        }
-        Some("}") => Err(BvhFault::ExtraBrace { line: cursor.line() }),
-        Some(word) => Err(BvhFault::MissingMotion { line: cursor.line(), found: format!("'{word}'") }),
-        None => Err(BvhFault::MissingMotion { line: cursor.line(), found: "the end of the file".into() }),
-    }
+    Ok(())
 }
 
 /// The keywords HIERARCHY and ROOT.
@@ -119,14 +147,18 @@ fn open_joint(
     joints: &mut Vec<RawJoint>,
     names: &mut HashMap<String, usize>,
     open: &mut Vec<Open>,
+    notes: &mut Vec<String>,
 ) -> Result<(), BvhFault> {
     let line = cursor.line();
-    let name = cursor.name().to_owned();
+    let mut name = cursor.name().to_owned();
     if name.is_empty() {
         return Err(BvhFault::NoName { line, keyword });
     }
     if let Some(&first) = names.get(&name) {
-        return Err(BvhFault::DuplicateName { line, name, first });
+        let free = (2..).map(|n| format!("{name}_{n}")).find(|other| !names.contains_key(other));
+        let other = free.unwrap_or_default();
+        notes.push(format!("Line {line}: the joint name '{name}' was used on line {first} already: '{other}' here."));
+        name = other;
     }
     if joints.len() >= MAX_JOINTS {
         return Err(BvhFault::TooManyJoints { line, joint: name, limit: MAX_JOINTS });

@@ -10,7 +10,8 @@
 //! - **Units and up axis** are not in the file, see [`units`](super::units).
 //!
 //! Keywords may be in any case, spacing is free, lines may end in CRLF, a byte-order mark is skipped, joint names may hold
-//! blanks and colons. Everything else is refused by line number, see [`BvhFault`].
+//! blanks and colons. Dialects whose meaning is certain are read with a note (`text`, `hierarchy`, `motion`, `select`); everything
+//! else is refused by line number, see [`BvhFault`].
 
 mod assemble;
 mod cursor;
@@ -20,7 +21,10 @@ mod fields;
 mod fold;
 mod hierarchy;
 mod motion;
-mod orient;
+pub(super) mod orient;
+mod select;
+mod spikes;
+mod text;
 pub mod write;
 
 use std::path::Path;
@@ -63,9 +67,12 @@ impl ParseError {
 
 /// Parses the bytes of a BVH file. Cost: one float parsed per value and one sine and cosine per rotation channel.
 pub fn parse(bytes: &[u8], options: &ReadOptions) -> Result<Clip, ParseError> {
-    let text = cursor::text(bytes)?;
-    let mut cursor = cursor::Cursor::new(text);
-    let joints = hierarchy::parse(&mut cursor)?;
-    let motion = motion::parse(cursor, &joints)?;
-    assemble::clip(joints, motion, options)
+    let mut notes = Vec::new();
+    let text = text::decode(bytes, &mut notes)?;
+    let mut cursor = cursor::Cursor::new(&text);
+    let mut hierarchy = hierarchy::parse(&mut cursor)?;
+    notes.append(&mut hierarchy.notes);
+    let motion = motion::parse(cursor, &hierarchy.joints, &mut notes)?;
+    let (joints, motion) = select::used(hierarchy.joints, motion, options.root.as_deref(), &mut notes)?;
+    assemble::clip(joints, motion, options, notes)
 }

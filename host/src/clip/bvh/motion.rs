@@ -16,43 +16,89 @@ pub(super) struct Motion {
 }
 
 /// Reads from after the keyword MOTION to the end.
-pub(super) fn parse(mut cursor: Cursor<'_>, joints: &[RawJoint]) -> Result<Motion, BvhFault> {
+pub(super) fn parse(mut cursor: Cursor<'_>, joints: &[RawJoint], notes: &mut Vec<String>) -> Result<Motion, BvhFault> {
     let channels: usize = joints.iter().map(|j| j.channels.len()).sum();
     if channels == 0 {
         return Err(BvhFault::NoChannels);
     }
     let (declared_line, declared) = frame_count(&mut cursor)?;
     let frame_time = frame_time(&mut cursor)?;
+    let start = cursor;
 
     // A value takes two bytes at least: the file's size, not its claim, bounds what is reserved.
-    let mut values = Vec::with_capacity(declared.saturating_mul(channels).min(cursor.left() / 2 + 1));
-    let mut frames = 0;
+    let room = declared.unwrap_or(usize::MAX).saturating_mul(channels).min(cursor.left() / 2 + 1);
+    let mut values = Vec::with_capacity(room);
+    let (mut frames, mut glued) = (0, 0);
     while let Some((line, text)) = cursor.full_line() {
-        if frames == declared {
-            return Err(BvhFault::MoreFrames { line, declared, declared_line });
-        }
         frames += 1;
-        let start = values.len();
+        let start_of_line = values.len();
         for word in text.split_ascii_whitespace() {
-            let value = values.len() - start;
+            let value = values.len() - start_of_line;
             match word.parse::<f64>() {
                 Ok(number) if number.is_finite() => values.push(number),
-                parsed if value < channels => {
-                    return Err(bad_value(joints, line, frames, value, word, parsed.is_ok()));
-                }
+                parsed if value < channels => match unglued(word) {
+                    Some(numbers) => {
+                        glued += 1;
+                        values.extend(numbers);
+                    }
+                    None => return Err(bad_value(joints, line, frames, value, word, parsed.is_ok())),
+                },
                 _ => values.push(0.0), // Beyond the last channel: the count is the fault to report.
             }
         }
-        let found = values.len() - start;
+        let found = values.len() - start_of_line;
         if found != channels {
             let last = cursor.at_end();
-            return Err(BvhFault::ValueCount { line, frame: frames, found, expected: channels, last });
+            let fault = BvhFault::ValueCount { line, frame: frames, found, expected: channels, last };
+            let values = wrapped(start, channels, declared).ok_or(fault)?;
+            notes.push("Frames are broken over several lines: cut by the number of channels.".into());
+            return Ok(Motion { frame_time, frames: values.len() / channels, values });
         }
     }
-    if frames < declared {
-        return Err(BvhFault::FewerFrames { line: cursor.line(), declared, declared_line, found: frames });
+    match declared {
+        Some(declared) if frames + 1 < declared || frames == 0 => {
+            return Err(BvhFault::FewerFrames { line: cursor.line(), declared, declared_line, found: frames });
+        }
+        None if frames == 0 => {
+            return Err(BvhFault::FewerFrames { line: cursor.line(), declared: 1, declared_line, found: 0 });
+        }
+        Some(declared) if declared != frames => notes.push(format!(
+            "Line {declared_line} declares {declared} frames, the file has {frames} whole ones: all of them are read."
+        )),
+        Some(_) => {}
+        None => notes.push(format!("The number of frames is not given: {frames} are read.")),
+    }
+    if glued > 0 {
+        notes.push(format!("{glued} words are several numbers without a blank between them (1.5-2.5): taken apart."));
     }
     Ok(Motion { frame_time, frames, values })
+}
+
+/// All numbers of the motion in one row, where they make whole frames, as many as were declared.
+fn wrapped(mut cursor: Cursor<'_>, channels: usize, declared: Option<usize>) -> Option<Vec<f64>> {
+    let mut values = Vec::new();
+    while let Some((_, text)) = cursor.full_line() {
+        for word in text.split_ascii_whitespace() {
+            values.push(word.parse::<f64>().ok().filter(|x| x.is_finite())?);
+        }
+    }
+    let whole = values.len().is_multiple_of(channels) && declared == Some(values.len() / channels);
+    whole.then_some(values)
+}
+
+/// The numbers of a word like `1.5-2.5`: fixed columns leave no blank before a minus sign.
+fn unglued(word: &str) -> Option<Vec<f64>> {
+    let mut numbers = Vec::new();
+    let (mut start, mut before) = (0, b'-');
+    for (at, byte) in word.bytes().enumerate() {
+        if byte == b'-' && (before.is_ascii_digit() || before == b'.') {
+            numbers.push(word.get(start..at)?.parse().ok()?);
+            start = at;
+        }
+        before = byte;
+    }
+    numbers.push(word.get(start..)?.parse().ok()?);
+    (numbers.len() > 1 && numbers.iter().all(|x: &f64| x.is_finite())).then_some(numbers)
 }
 
 fn bad_value(joints: &[RawJoint], line: usize, frame: usize, index: usize, word: &str, number: bool) -> BvhFault {
@@ -65,14 +111,20 @@ fn bad_value(joints: &[RawJoint], line: usize, frame: usize, index: usize, word:
     }
 }
 
-/// `Frames: N`, with or without blanks around the colon.
-fn frame_count(cursor: &mut Cursor<'_>) -> Result<(usize, usize), BvhFault> {
+/// `Frames: N`, with or without blanks and colon; none where the line is missing or says 0, as live recorders write.
+fn frame_count(cursor: &mut Cursor<'_>) -> Result<(usize, Option<usize>), BvhFault> {
+    let before = *cursor;
     let (line, text) = cursor.full_line().unwrap_or((cursor.line(), "the end of the file"));
+    if after_keys(text, &["frame", "time"]).is_some() {
+        *cursor = before;
+        return Ok((line, None));
+    }
     let Some(value) = after_keys(text, &["frames"]) else {
         return Err(BvhFault::MissingFrames { line, found: short(text) });
     };
     match value.parse::<usize>() {
-        Ok(n) if n > 0 => Ok((line, n)),
+        Ok(0) => Ok((line, None)),
+        Ok(n) => Ok((line, Some(n))),
         _ => Err(BvhFault::FrameCount { line, found: short(value) }),
     }
 }
@@ -88,7 +140,7 @@ fn frame_time(cursor: &mut Cursor<'_>) -> Result<f64, BvhFault> {
     }
 }
 
-/// What follows the key words and a colon, in any case and spacing.
+/// What follows the key words and a colon or blank, in any case and spacing.
 fn after_keys<'a>(text: &'a str, keys: &[&str]) -> Option<&'a str> {
     let mut rest = text;
     for key in keys {
@@ -99,7 +151,11 @@ fn after_keys<'a>(text: &'a str, keys: &[&str]) -> Option<&'a str> {
         }
         rest = &rest[key.len()..];
     }
-    Some(rest.trim_start().strip_prefix(':')?.trim())
+    let value = rest.trim_start();
+    match value.strip_prefix(':') {
+        Some(value) => Some(value.trim()),
+        None => rest.starts_with(char::is_whitespace).then_some(value.trim()),
+    }
 }
 
 fn short(text: &str) -> String {

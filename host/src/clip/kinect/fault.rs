@@ -30,6 +30,15 @@ pub enum KinectFault {
              Cut the recording there, or allow a longer gap"
     )]
     Gap { line: u64, column: String, seconds: f64, limit: f64 },
+    #[error(
+        "joint '{joint}' has no value in any row: it was never tracked. Leave out what needs it, or record it; all 20 joints are needed"
+    )]
+    NeverTracked { joint: &'static str },
+    #[error(
+        "the unit of length cannot be told: a leg (hip to ankle) of {leg:.4} units fits a human size in none of m, cm, mm. Say which \
+             it is (`--units cm`)"
+    )]
+    UnknownUnits { leg: f64 },
     #[error("only {found} frame(s) with different timestamps, expected at least 2")]
     TooShort { found: usize },
     #[error("the frame rate to resample to is {found}, expected a number from 1 to 1000")]

@@ -1,4 +1,5 @@
-//! Kinect recordings (Kinder-Gator): a CSV with `Timestamp` in ms and X, Y, Z in m of 20 joints a row.
+//! Kinect recordings (Kinder-Gator): a CSV with `Timestamp` in ms and X, Y, Z in m of 20 joints a row. Other clocks, units and axes are
+//! found where that is certain, with a note (`sense`).
 //!
 //! The way in: missing cells are bridged, the uneven clock becomes an even one, camera coordinates become the world's, a
 //! skeleton with rigid bones is fitted, and its rotations are solved for. Each step that changes something leaves a note.
@@ -10,6 +11,7 @@
 
 mod fault;
 mod fit;
+mod sense;
 mod table;
 
 pub use fault::KinectFault;
@@ -17,7 +19,8 @@ pub use fault::KinectFault;
 use nalgebra::Vector3;
 use std::path::Path;
 
-use super::{Clip, ReadError, read, solve};
+use super::read::slurp;
+use super::{Clip, ReadError, ReadOptions, Unit, UpAxis, solve};
 
 /// The 20 joints, parents before children, depth first, with the index of the parent.
 const JOINTS: [(&str, Option<usize>); 20] = [
@@ -60,11 +63,17 @@ pub struct KinectOptions {
     pub fps: f64,
     /// Longest time, s, over which missing numbers are bridged by straight lines.
     pub max_gap: f64,
+    /// Unit of length; else metres, unless the size of the body says millimetres or centimetres.
+    pub units: Option<Unit>,
+    /// Up axis; else Y, unless the body stands on its head.
+    pub up: Option<UpAxis>,
+    /// The axes are left-handed: X is turned round.
+    pub left_handed: bool,
 }
 
 impl Default for KinectOptions {
     fn default() -> Self {
-        KinectOptions { fps: 30.0, max_gap: 0.25 }
+        KinectOptions { fps: 30.0, max_gap: 0.25, units: None, up: None, left_handed: false }
     }
 }
 
@@ -82,7 +91,22 @@ pub struct Recording {
 /// Reads a recording with its measured positions; [`read_with`](crate::clip::read_with) gives the clip alone.
 pub fn read_recording(path: impl AsRef<Path>, options: &KinectOptions) -> Result<Recording, ReadError> {
     let path = path.as_ref();
-    parse(&read::slurp(path)?, options).map_err(|fault| ReadError::Kinect { path: path.into(), fault })
+    parse(&slurp(path)?, options).map_err(|fault| ReadError::Kinect { path: path.into(), fault })
+}
+
+/// The reader of [`formats`](super::formats): the clip alone, with what the caller knows of the file.
+pub(super) fn read(bytes: &[u8], path: &Path, options: &ReadOptions) -> Result<Clip, ReadError> {
+    let own = KinectOptions {
+        units: options.units.or(options.kinect.units),
+        up: options.up.or(options.kinect.up),
+        left_handed: options.left_handed || options.kinect.left_handed,
+        ..options.kinect.clone()
+    };
+    let recording = parse(bytes, &own).map_err(|fault| ReadError::Kinect { path: path.into(), fault })?;
+    let mut clip = recording.clip;
+    let map = super::JointMap::detect(&clip.skeleton);
+    super::measure::note_size(&mut clip, map.as_ref());
+    Ok(clip)
 }
 
 /// Parses the bytes of a recording.
@@ -91,7 +115,7 @@ pub fn parse(bytes: &[u8], options: &KinectOptions) -> Result<Recording, KinectF
         return Err(KinectFault::Rate { found: options.fps });
     }
     let mut table = table::read(bytes)?;
-    let mut notes = Vec::new();
+    let mut notes = std::mem::take(&mut table.notes);
     if table.repeated > 0 {
         notes.push(format!("{} row(s) that repeat a timestamp were dropped.", table.repeated));
     }
@@ -102,6 +126,7 @@ pub fn parse(bytes: &[u8], options: &KinectOptions) -> Result<Recording, KinectF
     if duration > 86_400.0 {
         return Err(KinectFault::TooLong { seconds: duration });
     }
+    sense::untracked(&mut table, &mut notes)?;
     let bridged = table::bridge(&mut table, options.max_gap)?;
     if bridged > 0 {
         notes.push(format!("Missing numbers in {bridged} row(s) were bridged by straight lines."));
@@ -121,6 +146,8 @@ pub fn parse(bytes: &[u8], options: &KinectOptions) -> Result<Recording, KinectF
     ));
 
     let mut frames = even_clock(&table, options.fps);
+    sense::units(&mut frames, options.units, &mut notes)?;
+    sense::axes(&mut frames, options, &mut notes);
     notes.push(to_world(&mut frames));
     if let Some(note) = sides(&frames) {
         notes.push(note);
@@ -143,7 +170,7 @@ pub fn parse(bytes: &[u8], options: &KinectOptions) -> Result<Recording, KinectF
 /// Positions at even steps, by straight lines between the rows.
 fn even_clock(table: &table::Table, fps: f64) -> Vec<Skeleton20> {
     let duration = table.times.last().copied().unwrap_or(0.0);
-    let count = 1 + (duration * fps + 1e-6).floor() as usize;
+    let count = 1 + (duration * fps + 1e-3).floor() as usize;
     let mut after = 1;
     let frames = (0..count).filter_map(|frame| {
         let time = frame as f64 / fps;
@@ -179,15 +206,8 @@ fn to_world(frames: &mut [Skeleton20]) -> String {
 
 /// Notes when the toes point against the direction in which left and right say the person faces.
 fn sides(frames: &[Skeleton20]) -> Option<String> {
-    let facing = |f: &Skeleton20| {
-        let left = (f[12] - f[16]) + (f[4] - f[8]);
-        let forward = left.cross(&Vector3::y());
-        let toes = (f[15] - f[14]) + (f[19] - f[18]);
-        forward.dot(&toes)
-    };
-    let against = frames.iter().filter(|f| facing(f) < 0.0).count();
-    (against * 10 > frames.len() * 8).then(|| {
-        let percent = 100 * against / frames.len();
-        format!("Left and right may be exchanged: the toes point backwards in {percent} % of the frames.")
+    let percent = sense::against(frames);
+    (percent > 80).then(|| {
+        format!("Left and right may be exchanged: the toes point backwards in {percent} % of the frames (`--handed left` exchanges them).")
     })
 }

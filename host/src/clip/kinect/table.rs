@@ -14,6 +14,8 @@ pub(super) struct Table {
     pub rows: Vec<Skeleton20>,
     /// Rows dropped because their timestamp was that of the row before.
     pub repeated: usize,
+    /// What was made of the clock and of several people.
+    pub notes: Vec<String>,
 }
 
 pub(super) fn read(bytes: &[u8]) -> Result<Table, KinectFault> {
@@ -28,7 +30,15 @@ pub(super) fn read(bytes: &[u8]) -> Result<Table, KinectFault> {
         Some(at) => Ok((at, column)),
         None => Err(KinectFault::MissingColumn { column }),
     };
-    let time_column = find("Timestamp".into())?;
+    const CLOCKS: [&str; 5] = ["Timestamp", "Time", "Timestamp_ms", "Frame", "FrameNumber"];
+    let time_column = CLOCKS
+        .iter()
+        .find_map(|name| find((*name).into()).ok())
+        .ok_or(KinectFault::MissingColumn { column: "Timestamp".into() })?;
+    const PEOPLE: [&str; 6] = ["BodyId", "Body", "TrackingId", "PersonId", "UserId", "SkeletonId"];
+    let body_column = PEOPLE.iter().find_map(|name| find((*name).into()).ok());
+    let body = body_column.as_ref().map(|(at, _)| commonest(bytes, *at));
+    let mut others = 0;
     let mut columns = Vec::with_capacity(3 * JOINTS.len());
     for (joint, _) in JOINTS {
         for axis in ["X", "Y", "Z"] {
@@ -37,13 +47,19 @@ pub(super) fn read(bytes: &[u8]) -> Result<Table, KinectFault> {
     }
     let expected = 1 + columns.iter().map(|c| c.0).max().unwrap_or(0).max(time_column.0);
 
-    let mut table = Table { lines: Vec::new(), times: Vec::new(), rows: Vec::new(), repeated: 0 };
+    let mut table = Table { lines: Vec::new(), times: Vec::new(), rows: Vec::new(), repeated: 0, notes: Vec::new() };
     let (mut first, mut previous) = (None, f64::NEG_INFINITY);
     let mut record = csv::StringRecord::new();
     while reader.read_record(&mut record).map_err(broken)? {
         let line = record.position().map_or(0, |p| p.line());
         if record.len() < expected {
             return Err(KinectFault::ShortRow { line, found: record.len(), expected });
+        }
+        if let (Some((at, _)), Some(body)) = (&body_column, &body)
+            && record.get(*at).unwrap_or_default() != body
+        {
+            others += 1;
+            continue;
         }
         let time = number(&record, &time_column, line)?;
         if !time.is_finite() {
@@ -65,10 +81,52 @@ pub(super) fn read(bytes: &[u8]) -> Result<Table, KinectFault> {
             }
         }
         table.lines.push(line);
-        table.times.push((time - *first.get_or_insert(time)) / 1000.0);
+        table.times.push(time - *first.get_or_insert(time));
         table.rows.push(row);
     }
+    if others > 0 {
+        let body = body.unwrap_or_default();
+        table.notes.push(format!(
+            "Several people: '{body}' has the most rows and is read, {others} row(s) of others are left out."
+        ));
+    }
+    let seconds = clock(&table.times, &time_column.1, &mut table.notes);
+    table.times.iter_mut().for_each(|t| *t *= seconds);
     Ok(table)
+}
+
+/// The commonest value of a column, the first where two are as common.
+fn commonest(bytes: &[u8], column: usize) -> String {
+    let mut reader = csv::ReaderBuilder::new().flexible(true).trim(csv::Trim::All).from_reader(bytes);
+    let mut counts: Vec<(String, usize)> = Vec::new();
+    for record in reader.records().flatten() {
+        let value = record.get(column).unwrap_or_default();
+        match counts.iter_mut().find(|(known, _)| known == value) {
+            Some((_, count)) => *count += 1,
+            None => counts.push((value.to_owned(), 1)),
+        }
+    }
+    let most = counts.iter().map(|(_, count)| *count).max();
+    counts.into_iter().find(|(_, count)| Some(*count) == most).map_or(String::new(), |(value, _)| value)
+}
+
+/// Seconds a unit of the clock: milliseconds, unless rows would then come faster than any sensor gives them, or too slowly.
+fn clock(times: &[f64], name: &str, notes: &mut Vec<String>) -> f64 {
+    let mut steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
+    steps.sort_by(f64::total_cmp);
+    let Some(&step) = steps.get(steps.len() / 2) else { return 1e-3 };
+    let numbers = times.iter().all(|t| t.fract() == 0.0) && step <= 1.0;
+    let (seconds, what) = match step {
+        _ if numbers => (1.0 / 30.0, "frame numbers, 30 of them a second assumed"),
+        s if s < 1.0 => (1.0, "seconds"),
+        s if s < 5000.0 => (1e-3, ""),
+        s if s < 150_000.0 => (1e-6, "microseconds"),
+        _ => (1e-7, "units of 100 ns"),
+    };
+    if !what.is_empty() {
+        notes.push(format!("The clock '{name}' counts {what} (its median step is {step})."));
+    }
+    seconds
 }
 
 /// A cell's number; NaN where the cell is empty or says so.

@@ -25,7 +25,7 @@ impl SkeletonMap {
     pub fn read(path: impl AsRef<Path>) -> Result<SkeletonMap, MapError> {
         let path = path.as_ref();
         let in_file = |error| MapError::InFile { path: path.into(), error: Box::new(error) };
-        let text = std::fs::read_to_string(path).map_err(|e| in_file(MapError::Io { error: e.to_string() }))?;
+        let text = crate::files::read_text(path).map_err(|e| in_file(MapError::Io { error: e.to_string() }))?;
         let mut map = Self::parse(&text).map_err(in_file)?;
         map.layout = path.file_stem().map_or(map.layout, |s| s.to_string_lossy().into_owned());
         Ok(map)

@@ -7,6 +7,7 @@ mod error;
 mod file;
 mod layouts;
 mod partners;
+mod parts;
 mod suggest;
 
 use std::path::Path;
@@ -17,6 +18,9 @@ pub use partners::mirror_partners;
 pub(crate) use suggest::nearest;
 
 use super::Skeleton;
+
+/// A map of fewer names than a body has limbs is not taken for the map of another clip.
+const LIMBS: usize = 5;
 
 /// Number of canonical joints.
 pub const CANONICAL: usize = 21;
@@ -113,15 +117,38 @@ pub struct JointMap {
     layout: String,
     joints: [Option<usize>; CANONICAL],
     partners: Vec<Option<usize>>,
+    fitted: bool,
 }
 
 impl JointMap {
     /// Recognises one of the known layouts by its joint names: cmu31 (also Xia), bandai22, m21, daz43, aalto19, kinect20,
     /// cc24 (`CC_Base_*`), mixamo. Name spaces (`mixamorig:`) are ignored.
     ///
-    /// `None` where no layout has all of pelvis, head and the limbs' joints; then a map file is needed.
+    /// Where no layout fits to the letter, names are read by their parts (side and bone): Biovision, Xsens, MotionBuilder, Unity, VRM,
+    /// `mixamorig_`, `Bip01`, `.L` and `.R`, lower case; see [`JointMap::is_fitted`].
+    ///
+    /// `None` where pelvis, head and the limbs' joints are not all found; then a map file is needed.
     pub fn detect(skeleton: &Skeleton) -> Option<JointMap> {
-        layouts::detect(skeleton)
+        let fitted = || parts::fit(skeleton).map(|map| JointMap { fitted: true, ..map });
+        layouts::detect(skeleton).or_else(fitted)
+    }
+
+    /// The given map where it fits, else what the names say where hardly any of the map's names are in the skeleton: it is of another
+    /// clip of the set.
+    pub fn choose(skeleton: &Skeleton, given: Option<&SkeletonMap>) -> Result<Option<JointMap>, MapError> {
+        let Some(given) = given else { return Ok(Self::detect(skeleton)) };
+        given.resolve(skeleton).map(Some).or_else(|error| {
+            let names = || given.joints.iter().flatten();
+            let found = names().filter(|name| skeleton.find(name).is_some()).count();
+            let other =
+                (names().count() >= LIMBS && 2 * found < names().count()).then(|| Self::detect(skeleton)).flatten();
+            other.map(Some).ok_or(error)
+        })
+    }
+
+    /// Whether the joints were found by parts of their names, not by a layout's names to the letter.
+    pub fn is_fitted(&self) -> bool {
+        self.fitted
     }
 
     /// Reads a map file and resolves it against a skeleton. See [`SkeletonMap::parse`] for the format.
@@ -136,7 +163,7 @@ impl JointMap {
     }
 
     fn new(layout: String, joints: [Option<usize>; CANONICAL], skeleton: &Skeleton) -> JointMap {
-        let mut map = JointMap { layout, joints, partners: Vec::new() };
+        let mut map = JointMap { layout, joints, partners: Vec::new(), fitted: false };
         map.partners = mirror_partners(skeleton, Some(&map));
         map
     }

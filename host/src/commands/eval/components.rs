@@ -2,30 +2,42 @@
 
 use std::path::PathBuf;
 
-use kinesic_host::components::{Report, evaluate};
+use kinesic_host::components::{FRAME_RATE, Report, ToClip, evaluate, to_clip};
 use kinesic_host::pack::PackFile;
+use kinesic_host::prepare::Source;
 use kinesic_host::rig::Rig;
 use miette::{IntoDiagnostic, miette};
+use serde::Serialize;
 
+use crate::commands::angles;
+use crate::commands::clips::Reading;
 use crate::commands::output::print_json;
 
 /// Measure a pack of style components
 ///
-/// The stored stream is played through the device's code, restyled and plain. Reconstruction error and style distance need
-/// the training clips: they are what the training recorded.
+/// The stored stream is played through the device's code, restyled and plain. Reconstruction error, style distance and
+/// the angles to the style need the training clips: they are what the training recorded. The change is that of the
+/// restyled stream from the plain one, frame for frame. With --target both are also compared with a clip, at the best
+/// alignment in time.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
   kinesic eval components old.kin
+  kinesic eval components old.kin --target walk-of-an-old-man.bvh
   kinesic eval components old.kin --json")]
 pub struct Args {
     /// Pack to measure
     #[arg(value_name = "PACK.kin")]
     pack: PathBuf,
-    /// Print one JSON object: reconstruction_error, density, style_distance, content_distance, bone_error_max_percent,
-    /// jerk_ratio and more
+    /// Clip that the restyled motion should be like: the content, performed in the style
+    #[arg(long, value_name = "CLIP")]
+    target: Option<PathBuf>,
+    /// Print one JSON object: reconstruction_error, density, style_distance, content_distance, degrees_after,
+    /// jerk_ratio, change and target (cm and degrees over all joints, leaves, inner joints and by joint) and more
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    reading: Reading,
 }
 
 /// Runs the command.
@@ -36,12 +48,37 @@ pub fn run(args: &Args) -> miette::Result<()> {
         file.provenance().ok_or_else(|| miette!("{}: its provenance cannot be read", args.pack.display()))?;
     let rig = Rig::from_pack(&pack).into_diagnostic()?;
     let report = evaluate(&pack, &rig, &provenance.metrics).into_diagnostic()?;
+    let target = match &args.target {
+        Some(path) => {
+            let clip = Source::read(path, &args.reading.options()?).into_diagnostic()?;
+            let clip = clip.on_rig(&rig, FRAME_RATE).into_diagnostic()?;
+            Some(to_clip(&pack, &rig, &clip).into_diagnostic()?)
+        }
+        None => None,
+    };
     if args.json {
-        print_json(&report)
-    } else {
-        print(&report);
-        Ok(())
+        return print_json(&Figures { report: &report, target: target.as_ref() });
     }
+    print(&report);
+    println!();
+    println!("change: RMS joint distance, cm; {}", angles::CAPTION);
+    println!("{:>10.2}   cm", report.change.cm);
+    angles::print(&[("change", Some(&report.change.degrees))]);
+    if let Some(ToClip { error, identity }) = &target {
+        println!();
+        println!("to the target: aligned RMS joint distance, cm; {}", angles::CAPTION);
+        println!("{:>10.2}{:>10.2}   cm", identity.cm, error.cm);
+        angles::print(&[("plain", Some(&identity.degrees)), ("restyled", Some(&error.degrees))]);
+    }
+    Ok(())
+}
+
+#[derive(Serialize)]
+struct Figures<'a> {
+    #[serde(flatten)]
+    report: &'a Report,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    target: Option<&'a ToClip>,
 }
 
 fn print(report: &Report) {
@@ -51,10 +88,10 @@ fn print(report: &Report) {
     line("reconstruction error", report.reconstruction_error, "relative, content clip (recorded)");
     line("style distance", report.style_distance, "Gram matrices, relative (recorded)");
     line("content distance", report.content_distance, "components, relative");
-    line("largest bone error, composed", report.composed_bone_error_max_percent, "%");
-    line("mean bone error, composed", report.composed_bone_error_mean_percent, "%");
-    line("largest bone error, restored", report.bone_error_max_percent, "%");
-    line("mean bone error, restored", report.bone_error_mean_percent, "%");
+    line("degrees to the style, before", report.degrees_before.all, "mean over all joints (recorded)");
+    line("degrees to the style, after", report.degrees_after.all, "mean over all joints (recorded)");
+    line("the same, leaves, before", report.degrees_before.leaves, "head, hands, feet (recorded)");
+    line("the same, leaves, after", report.degrees_after.leaves, "head, hands, feet (recorded)");
     line("jerk", report.jerk, "m/s^3");
     line("jerk ratio", report.jerk_ratio, "to the content, both from the stored stream");
 }

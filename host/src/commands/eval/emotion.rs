@@ -5,16 +5,21 @@ use std::path::PathBuf;
 use kinesic_host::emotion::evaluate::{Report, Scorer, evaluate};
 use kinesic_host::emotion::labels::{self, Attribute};
 use kinesic_host::emotion::motions::read;
+use kinesic_host::emotion::{Distances, compare_motions};
 use kinesic_host::pack::PackFile;
 use miette::{IntoDiagnostic, WrapErr, miette};
+use serde::Serialize;
 
+use crate::commands::angles;
 use crate::commands::clips::Reading;
 use crate::commands::output::{print_json, spinner};
 
 /// Measure an emotion pack on labelled clips
 ///
-/// Every clip is read by the device's ranking functions (a gait: the mean of its strides); a pair of clips of one group with
-/// different labels is right if their strengths are in the same order. Use takes that the pack was not trained on.
+/// Every clip is read by the pack's ranking functions (a gait: the mean of its strides); a pair of clips of one group with
+/// different labels is right if their strengths are in the same order. What the pack plays at the strengths of a clip's labels is
+/// compared with the clip's motions, and so is the motion at the middle of the ranges, which no label changes: centimetres and
+/// degrees. Use takes that the pack was not trained on.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -31,7 +36,8 @@ pub struct Args {
     /// Order of the labels of an attribute of the pack, where it is not that of the training (may be repeated)
     #[arg(long, value_name = "[NAME:]A>B=C>D", value_parser = Attribute::from_order)]
     order: Vec<Attribute>,
-    /// Print one JSON object: pair_accuracy, spearman, pairs, and the same by attribute
+    /// Print one JSON object: pair_accuracy, spearman, pairs, the same by attribute, and distances (cm and degrees over all joints,
+    /// leaves, inner joints and by joint, with swing and twist)
     #[arg(long)]
     json: bool,
     #[command(flatten)]
@@ -64,6 +70,8 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let progress = |index: usize| bar.set_message(format!("reading clip {} of {all}", index + 1));
     let (_, examples) = read(rows, Some(scorer.rig.clone()), &reading, &progress).into_diagnostic()?;
     let report = evaluate(&scorer, &examples);
+    bar.set_message("playing and comparing");
+    let distances = compare_motions(&pack, &scorer, &examples);
     bar.finish_and_clear();
     if report.pairs == 0 {
         return Err(miette!(
@@ -74,11 +82,25 @@ pub fn run(args: &Args) -> miette::Result<()> {
             report.unread.len()
         ));
     }
+    let distances = distances.into_diagnostic()?;
     if args.json {
-        return print_json(&report);
+        return print_json(&Figures { report: &report, distances: distances.as_ref() });
     }
     print(&report);
+    if let Some(Distances { error, identity }) = &distances {
+        println!();
+        println!("to the recorded motions: aligned RMS joint distance, cm; {}", angles::CAPTION);
+        println!("{:>10.2}{:>10.2}   cm", identity.cm, error.cm);
+        angles::print(&[("middle", Some(&identity.degrees)), ("labelled", Some(&error.degrees))]);
+    }
     Ok(())
+}
+
+#[derive(Serialize)]
+struct Figures<'a> {
+    #[serde(flatten)]
+    report: &'a Report,
+    distances: Option<&'a Distances>,
 }
 
 fn print(report: &Report) {

@@ -8,13 +8,16 @@ use kinesic_host::prepare::{Source, fingerprint};
 use kinesic_host::rig::Rig;
 use miette::{IntoDiagnostic, miette};
 
+use crate::commands::angles;
 use crate::commands::clips::{Reading, clip_paths};
 use crate::commands::output::{print_json, spinner};
 
 /// Measure how near the predicted pose is, and how much expression is left, clip by clip
 ///
-/// Angles are geodesic, means over the joints that move and over all frames. Beside the pack: linear regression from the same
-/// features, and the mean pose, both fitted on the pack's training clips.
+/// Angles are geodesic, means over the joints that move in these clips (by a degree or more) and over all frames. Beside the pack:
+/// linear regression from the same features, and the mean pose, both fitted on the pack's training clips. These two are not measured
+/// here: they are what the pack states. A second table is over all joints of the skeleton, with the distance of the joints in
+/// centimetres.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -33,7 +36,9 @@ pub struct Args {
     /// Random seed; the measurement makes no random choice
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Print one JSON object: autoencoder_mse, stacked_mse, geodesic_deg, linear_deg, mean_pose_deg, expressive_deg, and every clip
+    /// Print one JSON object: autoencoder_mse, stacked_mse, geodesic_deg, linear_deg, mean_pose_deg, expressive_deg, moving_joints,
+    /// as_the_pack_states, distances (cm and degrees over all joints, leaves, inner joints and by joint, with swing and twist), and
+    /// every clip
     #[arg(long)]
     json: bool,
     #[command(flatten)]
@@ -74,6 +79,13 @@ pub fn run(args: &Args) -> miette::Result<()> {
     bar.set_message("playing");
     let report = evaluate(&pack, &rig, &provenance.baselines, &provenance.metrics, &clips).into_diagnostic()?;
     bar.finish_and_clear();
+    if report.moving_joints == 0 {
+        return Err(miette!(
+            help = "name clips of motions",
+            "{}: no joint turns by a degree or more in these clips: there is nothing to predict",
+            args.pack.display()
+        ));
+    }
     if args.json {
         return print_json(&report);
     }
@@ -82,7 +94,11 @@ pub fn run(args: &Args) -> miette::Result<()> {
 }
 
 fn print(report: &Report) {
-    println!("degrees a joint: predicted pose, linear regression, mean pose; expression left");
+    println!(
+        "degrees a joint, over the {} joints that move in these clips: predicted pose; linear regression and mean pose as the pack \
+         states them; expression left",
+        report.moving_joints
+    );
     println!("{:>9} {:>9} {:>9} {:>10}   clip", "predicted", "linear", "mean", "expression");
     let row = |[a, b, c, d]: [f64; 4], name: &str| println!("{a:9.2} {b:9.2} {c:9.2} {d:10.2}   {name}");
     for clip in &report.clips {
@@ -91,4 +107,13 @@ fn print(report: &Report) {
     }
     let mean = [report.geodesic_deg, report.linear_deg, report.mean_pose_deg, report.expressive_deg];
     row(mean, &format!("all {}, MSE {:.5}", report.clips.len(), report.stacked_mse));
+    let models = [
+        ("mean pose", &report.distances.mean_pose),
+        ("linear", &report.distances.linear),
+        ("predicted", &report.distances.predicted),
+    ];
+    println!();
+    println!("all joints, frame for frame: RMS joint distance, cm; {}", angles::CAPTION);
+    println!("{}   cm", models.map(|(_, distance)| format!("{:>10.2}", distance.cm)).concat());
+    angles::print(&models.map(|(name, distance)| (name, Some(&distance.degrees))));
 }

@@ -2,20 +2,24 @@
 
 use std::path::PathBuf;
 
+use kinesic_host::measure::turns::Turns;
 use kinesic_host::pack::PackFile;
 use kinesic_host::prepare::Source;
 use kinesic_host::rig::Rig;
 use kinesic_host::translate::{Errors, NamedPair, Report, evaluate};
 use miette::{IntoDiagnostic, miette};
 
+use crate::commands::angles;
 use crate::commands::clips::{Pairs, Reading};
 use crate::commands::output::{print_json, spinner};
 
-/// Measure how well a pack translates: aligned RMS joint distance to the target, cm
+/// Measure how well a pack translates: aligned RMS joint distance to the target, cm, and mean angle to it, degrees
 ///
 /// Every source is played through the device's code and compared with its target, both on the pack's skeleton, in
 /// heading-local coordinates without horizontal root movement, at the best alignment in time. Beside it: the source itself
-/// (identity), and the mean offset and the best affine map of each joint, fitted on the pack's training pairs.
+/// (identity), and the mean offset and the best affine map of each joint, fitted on the pack's training pairs: of positions for
+/// the distances, of rotations for the angles. These two are not fitted here but what the pack states. Angles are geodesic, between
+/// local rotations; the root counts with its tilt.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -27,7 +31,8 @@ pub struct Args {
     pack: PathBuf,
     #[command(flatten)]
     pairs: Pairs,
-    /// Print one JSON object: error_cm, identity_cm, offset_cm, affine_cm, the same with open ends, and every pair
+    /// Print one JSON object: error_cm, identity_cm, offset_cm, affine_cm, the same with open ends, degrees (over all joints, leaves,
+    /// inner joints and by joint, with swing and twist), and every pair
     #[arg(long)]
     json: bool,
     #[command(flatten)]
@@ -56,9 +61,10 @@ pub fn run(args: &Args) -> miette::Result<()> {
         clips.push((read(source)?, read(target)?));
     }
     bar.set_message("playing and comparing");
+    let turns = Turns::from_numbers(&provenance.turns, rig.joints());
     let named: Vec<NamedPair> =
         clips.iter().map(|((source, a), (target, b))| NamedPair { source: (source, a), target: (target, b) }).collect();
-    let report = evaluate(&pack, &rig, &provenance.baselines, &named).into_diagnostic()?;
+    let report = evaluate(&pack, &rig, &provenance.baselines, turns.as_ref(), &named).into_diagnostic()?;
     bar.finish_and_clear();
     if args.json {
         print_json(&report)
@@ -69,7 +75,9 @@ pub fn run(args: &Args) -> miette::Result<()> {
 }
 
 fn print(report: &Report) {
-    println!("aligned RMS joint distance to the target, cm (in brackets: with open ends)");
+    println!(
+        "aligned RMS joint distance to the target, cm (in brackets: with open ends); offset and affine as the pack states them"
+    );
     println!("{:>15} {:>15} {:>15} {:>15}   pair", "identity", "offset", "affine", "pack");
     let row = |e: &Errors, name: String| {
         let cell = |closed: f64, open: f64| format!("{closed:.2} ({open:.2})");
@@ -85,4 +93,7 @@ fn print(report: &Report) {
         row(&pair.errors, format!("{} -> {}", pair.source, pair.target));
     }
     row(&report.errors, format!("mean of {}", report.pairs.len()));
+    println!();
+    println!("mean of {}: {}", report.pairs.len(), angles::CAPTION);
+    angles::print(&angles::columns(&report.errors));
 }

@@ -3,19 +3,21 @@
 use std::path::{Path, PathBuf};
 
 use kinesic_host::components::{
-    FRAME_RATE, Optimiser, RECORDED, Report, Sparsity, TradeOff, TrainOptions, Trained, Weights, evaluate, trade_off,
-    train_kept,
+    FRAME_RATE, Optimiser, RECORDED, Report, Sparsity, ToClip, TradeOff, TrainOptions, Trained, Weights, evaluate,
+    to_clip, trade_off, train_kept,
 };
-use kinesic_host::pack::{InputFile, Metric, PackFile, Provenance};
-use kinesic_host::prepare::{Source, fingerprint};
+use kinesic_host::measure::Distance;
+use kinesic_host::pack::{Metric, PackFile};
+use kinesic_host::prepare::Source;
 use kinesic_host::reached::Reached;
-use miette::{IntoDiagnostic, WrapErr};
+use miette::IntoDiagnostic;
 use serde::Serialize;
 
 use super::report::{ReportArgs, components::page};
 use super::resume::ResumeArgs;
+use super::session::Session;
 use crate::commands::clips::Reading;
-use crate::commands::output::{check_output, command_line, print_json, spinner, write_whole};
+use crate::commands::origin::fingerprints;
 use crate::commands::precision::Precision;
 
 /// Style weights of the trade-off curve.
@@ -63,9 +65,6 @@ pub struct Args {
     /// Weight of the style's Gram matrix; see --curve
     #[arg(long, value_name = "S", default_value_t = 0.01)]
     style_weight: f64,
-    /// Weight of keeping the length of bones while learning (the device restores them in any case)
-    #[arg(long, value_name = "W", default_value_t = 10.0)]
-    bone_weight: f64,
     /// Weight of velocities and accelerations like the content's; 1 is a good start against jerky results
     #[arg(long, value_name = "W", default_value_t = 0.0)]
     smooth: f64,
@@ -106,50 +105,37 @@ fn count(text: &str) -> Result<Count, String> {
 
 /// Runs the command.
 pub fn run(args: &Args) -> miette::Result<()> {
-    check_output(&args.out, "kin")?;
+    let session = Session::begin(&args.out, args.seed, args.json, &args.report)?;
     args.precision.check("style components", None)?;
-    args.report.check(&args.out)?;
     let reading = args.reading.options()?;
-    let bar = spinner();
-    bar.set_message("reading the clips");
+    session.say("reading the clips");
     let read = |path: &Path| Source::read(path, &reading).into_diagnostic();
     let (content, style) = (read(&args.content)?, read(&args.style)?);
     let rig = content.rig().into_diagnostic()?;
     let on_rig = |source: &Source| source.on_rig(&rig, FRAME_RATE).into_diagnostic();
     let (content, style) = (on_rig(&content)?, on_rig(&style)?);
-    bar.set_message("factorising and learning");
+    let rig = rig.centred(&[&rig.poses(&content), &rig.poses(&style)]);
+    session.say("factorising and learning");
     let options = args.options();
-    let name = args.name.clone().unwrap_or_else(|| file_stem(&args.out));
-    let prints: Vec<InputFile> = [&args.content, &args.style]
-        .into_iter()
-        .map(|path| fingerprint(path).into_diagnostic().wrap_err_with(|| path.display().to_string()))
-        .collect::<Result<_, _>>()?;
+    let name = session.name(args.name.as_ref(), "style");
+    let prints = fingerprints([args.content.as_path(), args.style.as_path()])?;
     // The same options and the same clips, read in the same way: the same training.
     let deciding = [format!("components {options:?} {}", args.curve), format!("{prints:?}"), args.reading.deciding()?];
     let mut checkpoint = args.resume.checkpoint(&args.out, &deciding)?;
     let reached = Reached::new(&mut checkpoint).into_diagnostic()?;
     let trained = train_kept(&rig, &content, &style, &name, &options, &reached).into_diagnostic()?;
-    let curve = if args.curve { trade_off(&rig, &trained, &options, &CURVE, &reached) } else { Vec::new() };
+    let curve = if args.curve { trade_off(&trained, &options, &CURVE, &reached) } else { Vec::new() };
     drop(reached);
 
-    let mut provenance = Provenance {
-        tool: format!("kinesic {}", env!("CARGO_PKG_VERSION")),
-        command: command_line(),
-        seed: args.seed,
-        inputs: prints,
-        metrics: recorded(&trained),
-        notes: vec![trained.choice.reason.clone()],
-        ..Provenance::default()
-    };
+    let mut provenance = session.provenance(prints, vec![trained.choice.reason.clone()]);
+    provenance.metrics = recorded(&trained);
     let preview = PackFile::from_bytes(&trained.model.pack(&rig, &provenance));
     let report = evaluate(&preview.pack().into_diagnostic()?, &rig, &provenance.metrics).into_diagnostic()?;
+    let to_style = to_clip(&preview.pack().into_diagnostic()?, &rig, &style).into_diagnostic()?;
     provenance.metrics.extend(measured(&report));
     let bytes = trained.model.pack(&rig, &provenance);
-    write_whole(&args.out, &bytes)?;
-    let file = PackFile::from_bytes(&bytes);
-    args.report.write(&args.out, &file, page(&trained, &report, &curve, [&content, &style], &rig, &file)?)?;
-    checkpoint.finish();
-    bar.finish_and_clear();
+    let file = session.write(&bytes)?;
+    let page = page(&trained, &report, &to_style, &curve, [&content, &style], &rig, &file)?;
     let summary = Summary {
         pack: args.out.display().to_string(),
         bytes: bytes.len(),
@@ -161,13 +147,12 @@ pub fn run(args: &Args) -> miette::Result<()> {
         strength: trained.model.strength,
         curve: &curve,
         training: &report,
+        to_style: &to_style,
     };
-    if args.json {
-        print_json(&summary)
-    } else {
-        print(&summary);
+    session.finish(&file, page, Some(checkpoint), &summary, |summary| {
+        print(summary);
         Ok(())
-    }
+    })
 }
 
 impl Args {
@@ -182,36 +167,28 @@ impl Args {
                 density: (self.density != 1.0).then_some(self.density),
                 ..Sparsity::default()
             },
-            weights: Weights {
-                content: self.content_weight,
-                style: self.style_weight,
-                bones: self.bone_weight,
-                smooth: self.smooth,
-            },
+            weights: Weights { content: self.content_weight, style: self.style_weight, smooth: self.smooth },
             optimiser: Optimiser { seed: self.seed, ..Optimiser::default() },
             posture: self.posture,
         }
     }
 }
 
-fn file_stem(path: &Path) -> String {
-    path.file_stem().map_or_else(|| "style".to_owned(), |stem| stem.to_string_lossy().into_owned())
-}
-
-fn metric(name: &str, value: f64) -> Metric {
-    Metric { name: name.to_owned(), value }
-}
-
 fn recorded(trained: &Trained) -> Vec<Metric> {
-    vec![metric(RECORDED[0], trained.reconstruction_error), metric(RECORDED[1], trained.style_distance)]
+    let (before, after) = (&trained.degrees_before, &trained.degrees_after);
+    let values =
+        [trained.reconstruction_error, trained.style_distance, before.all, before.leaves, after.all, after.leaves];
+    RECORDED.into_iter().zip(values).map(|(name, value)| Metric::new(name, value)).collect()
 }
 
 fn measured(report: &Report) -> Vec<Metric> {
     vec![
-        metric("density", report.density),
-        metric("content_distance", report.content_distance),
-        metric("bone_error_max_percent", report.bone_error_max_percent),
-        metric("jerk_ratio", report.jerk_ratio),
+        Metric::new("density", report.density),
+        Metric::new("content_distance", report.content_distance),
+        Metric::new("jerk_ratio", report.jerk_ratio),
+        Metric::new("change_cm", report.change.cm),
+        Metric::new("change_degrees", report.change.degrees.all),
+        Metric::new("change_degrees_leaves", report.change.degrees.leaves),
     ]
 }
 
@@ -228,6 +205,7 @@ struct Summary<'a> {
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     curve: &'a [TradeOff],
     training: &'a Report,
+    to_style: &'a ToClip,
 }
 
 fn print(summary: &Summary) {
@@ -244,17 +222,20 @@ fn print(summary: &Summary) {
         report.style_distance, report.content_distance
     );
     println!(
-        "bones          {:8.2}  % largest error as composed, {:.4} % restored",
-        report.composed_bone_error_max_percent, report.bone_error_max_percent
+        "angles         {:8.1}  degrees to the style, {:.1} before; head, hands, feet {:.1}, {:.1} before",
+        report.degrees_after.all, report.degrees_before.all, report.degrees_after.leaves, report.degrees_before.leaves
     );
     println!("jerk           {:8.2}  times the content's", report.jerk_ratio);
+    let row = |name: &str, Distance { cm, degrees }: &Distance| {
+        println!("{name:<14} {cm:8.2}  cm {:8.2} degrees {:8.2} degrees at the leaves", degrees.all, degrees.leaves);
+    };
+    row("change", &report.change);
+    row("content: style", &summary.to_style.identity);
+    row("result: style", &summary.to_style.error);
     if !summary.curve.is_empty() {
-        println!("style weight   style distance   content distance   mean bone error, %");
+        println!("style weight   style distance   content distance");
         for point in summary.curve {
-            println!(
-                "{:12}   {:14.3}   {:16.3}   {:18.3}",
-                point.style_weight, point.style_distance, point.content_distance, point.bone_error_mean_percent
-            );
+            println!("{:12}   {:14.3}   {:16.3}", point.style_weight, point.style_distance, point.content_distance);
         }
     }
     println!(

@@ -1,22 +1,23 @@
 //! `kinesic train emotion`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use kinesic_host::clip::ReadOptions;
 use kinesic_host::emotion::evaluate::{Report, Scorer, evaluate};
 use kinesic_host::emotion::labels::{self, Attribute};
 use kinesic_host::emotion::motions::{Example, hold_out, read};
 use kinesic_host::emotion::segment::Cut;
-use kinesic_host::emotion::{TrainOptions, Trained, train};
-use kinesic_host::pack::{Metric, PackFile, Provenance};
-use kinesic_host::prepare::{Source, fingerprint};
+use kinesic_host::emotion::{Distances, TrainOptions, Trained, compare_motions, train};
+use kinesic_host::pack::{Metric, PackFile};
+use kinesic_host::prepare::Source;
 use kinesic_host::rig::Rig;
 use miette::{IntoDiagnostic, WrapErr, miette};
 use serde::Serialize;
 
 use super::report::{ReportArgs, emotion::page};
+use super::session::{Session, part, share};
 use crate::commands::clips::Reading;
-use crate::commands::output::{check_output, command_line, print_json, spinner, write_whole};
+use crate::commands::origin::{fingerprints, name_of};
 
 /// Learn how strongly motions show emotions, and how a motion looks at every strength
 ///
@@ -97,61 +98,50 @@ enum How {
     Whole,
 }
 
-fn share(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(share) if (0.0..=0.9).contains(&share) => Ok(share),
-        _ => Err("expected a number from 0 to 0.9".to_owned()),
-    }
-}
-
 /// Runs the command.
 pub fn run(args: &Args) -> miette::Result<()> {
-    check_output(&args.out, "kin")?;
-    args.report.check(&args.out)?;
+    let session = Session::begin(&args.out, args.seed, args.json, &args.report)?;
     let attributes = args.attributes()?;
     let rows = labels::read(&args.labels, &attributes).into_diagnostic()?;
     let out = hold_out(&rows, args.hold_out, args.seed);
-    let inputs = rows.iter().map(|row| row.path.as_path()).chain([args.labels.as_path()]);
-    let inputs = inputs.map(|path| fingerprint(path).into_diagnostic().wrap_err_with(|| path.display().to_string()));
-    let inputs = inputs.collect::<miette::Result<Vec<_>>>()?;
+    let inputs = fingerprints(rows.iter().map(|row| row.path.as_path()).chain([args.labels.as_path()]))?;
     let reading = args.reading.options()?;
-    let bar = spinner();
     let all = rows.len();
-    let progress = |index: usize| bar.set_message(format!("reading clip {} of {all}", index + 1));
-    let (rig, examples) = read(rows, args.rig(&reading)?, &reading, &progress).into_diagnostic()?;
+    let progress = |index: usize| session.say(format!("reading clip {} of {all}", index + 1));
+    let (rig, mut examples) = read(rows, args.rig(&reading)?, &reading, &progress).into_diagnostic()?;
+    examples.iter_mut().for_each(|example| example.name = name_of(&example.name));
     // The table has rows, so there is a first clip.
     let rig = rig.ok_or_else(|| miette!("{}: there is no clip", args.labels.display()))?;
-    let part = |held: bool| {
-        let chosen = examples.iter().zip(&out).filter(|(_, out)| **out == held);
-        chosen.map(|(example, _)| example.clone()).collect::<Vec<Example>>()
-    };
-    let (kept, held) = (part(false), part(true));
-    bar.set_message(format!("learning from {} clips", kept.len()));
+    let (kept, held) = (part(&examples, &out, false), part(&examples, &out, true));
+    session.say(format!("learning from {} clips", kept.len()));
     let names: Vec<String> = attributes.iter().map(|attribute| attribute.name.clone()).collect();
-    let name = args.name.clone().unwrap_or_else(|| file_stem(&args.out));
+    let name = session.name(args.name.as_ref(), "motion");
     let trained = train(&rig, &name, &names, &kept, &args.options())
         .into_diagnostic()
         .wrap_err_with(|| args.labels.display().to_string())?;
 
-    let mut provenance = Provenance {
-        tool: format!("kinesic {}", env!("CARGO_PKG_VERSION")),
-        command: command_line(),
-        seed: args.seed,
-        inputs,
-        notes: attributes.iter().map(Attribute::note).chain(trained.notes.iter().cloned()).collect(),
-        ..Provenance::default()
-    };
-    let preview = PackFile::from_bytes(&trained.model.pack(&rig, &provenance));
+    let notes = attributes.iter().map(Attribute::note).chain(trained.notes.iter().cloned());
+    let mut provenance = session.provenance(inputs, notes.collect());
+    let preview = PackFile::from_bytes(&trained.model.pack(&trained.rig, &provenance));
     let pack = preview.pack().into_diagnostic()?;
     let scorer = Scorer::load(&pack).into_diagnostic()?;
     let training = evaluate(&scorer, &kept);
     let unseen = (!held.is_empty()).then(|| evaluate(&scorer, &held));
+    let distances = |examples: &[Example]| compare_motions(&pack, &scorer, examples).into_diagnostic();
+    let distances = [distances(&kept)?, distances(&held)?];
     provenance.metrics = metrics(&trained, &training, unseen.as_ref());
-    let bytes = trained.model.pack(&rig, &provenance);
-    write_whole(&args.out, &bytes)?;
-    let file = PackFile::from_bytes(&bytes);
-    args.report.write(&args.out, &file, page(&trained, &training, unseen.as_ref(), &scorer, &kept, &pack)?)?;
-    bar.finish_and_clear();
+    for (name, found) in ["training", "takes_held_out"].into_iter().zip(&distances) {
+        let values = found.iter().flat_map(|d| [("error", &d.error), ("identity", &d.identity)]);
+        provenance.metrics.extend(values.flat_map(|(model, distance)| {
+            [
+                Metric::new(format!("{name}_{model}_cm"), distance.cm),
+                Metric::new(format!("{name}_{model}_degrees"), distance.degrees.all),
+            ]
+        }));
+    }
+    let bytes = trained.model.pack(&trained.rig, &provenance);
+    let file = session.write(&bytes)?;
+    let page = page(&trained, &training, unseen.as_ref(), &distances, &scorer, &kept, &pack)?;
     let summary = Summary {
         pack: args.out.display().to_string(),
         bytes: bytes.len(),
@@ -169,12 +159,12 @@ pub fn run(args: &Args) -> miette::Result<()> {
         notes: &trained.notes,
         training: &training,
         held_out: unseen.as_ref(),
+        distances: &distances,
     };
-    if args.json {
-        return print_json(&summary);
-    }
-    print(&summary);
-    Ok(())
+    session.finish(&file, page, None, &summary, |summary| {
+        print(summary);
+        Ok(())
+    })
 }
 
 impl Args {
@@ -219,20 +209,15 @@ impl Args {
     }
 }
 
-fn file_stem(path: &Path) -> String {
-    path.file_stem().map_or_else(|| "motion".to_owned(), |stem| stem.to_string_lossy().into_owned())
-}
-
 fn metrics(trained: &Trained, training: &Report, unseen: Option<&Report>) -> Vec<Metric> {
-    let metric = |name: &str, value: f64| Metric { name: name.to_owned(), value };
     let mut metrics = vec![
-        metric("keyframe_error_cm", 100.0 * trained.keyframe_error),
-        metric("network_error_cm", 100.0 * trained.network_error),
-        metric("pair_accuracy_training", training.pair_accuracy),
+        Metric::new("keyframe_error_cm", 100.0 * trained.keyframe_error),
+        Metric::new("network_error_cm", 100.0 * trained.network_error),
+        Metric::new("pair_accuracy_training", training.pair_accuracy),
     ];
     if let Some(unseen) = unseen {
-        metrics.push(metric("pair_accuracy_takes_held_out", unseen.pair_accuracy));
-        metrics.push(metric("spearman_takes_held_out", unseen.spearman));
+        metrics.push(Metric::new("pair_accuracy_takes_held_out", unseen.pair_accuracy));
+        metrics.push(Metric::new("spearman_takes_held_out", unseen.spearman));
     }
     metrics
 }
@@ -250,6 +235,8 @@ struct Summary<'a> {
     notes: &'a [String],
     training: &'a Report,
     held_out: Option<&'a Report>,
+    /// To the recorded motions: of the training clips, of the clips held out.
+    distances: &'a [Option<Distances>; 2],
 }
 
 #[derive(Serialize)]
@@ -280,6 +267,14 @@ fn print(summary: &Summary) {
         "error of a joint, root mean square: {:.1} cm between keyframes, {:.1} cm from strengths to a motion",
         summary.keyframe_error_cm, summary.network_error_cm
     );
+    for (name, found) in ["trained on", "held out"].into_iter().zip(summary.distances) {
+        for (model, distance) in found.iter().flat_map(|d| [("labels", &d.error), ("middle", &d.identity)]) {
+            println!(
+                "{name:<10} played at the {model}: {:6.2} cm {:6.2} degrees {:6.2} degrees at the leaves from the clips",
+                distance.cm, distance.degrees.all, distance.degrees.leaves
+            );
+        }
+    }
     for Strengths { name, strength: [low, high] } in &summary.attributes {
         println!("{name}: strengths from {low:.2} to {high:.2}");
     }

@@ -4,13 +4,13 @@ use std::path::PathBuf;
 
 use kinesic_host::face::landmarks;
 use kinesic_host::face::{Face, Report, TrainOptions, evaluate, hold_out, train};
-use kinesic_host::pack::{Metric, PackFile, Provenance};
-use kinesic_host::prepare::fingerprint;
+use kinesic_host::pack::{Metric, PackFile};
 use miette::{IntoDiagnostic, WrapErr, miette};
 use serde::Serialize;
 
 use super::report::{ReportArgs, face::page};
-use crate::commands::output::{check_output, command_line, print_json, spinner, write_whole};
+use super::session::{Session, part, share};
+use crate::commands::origin::fingerprints;
 use crate::commands::precision::Precision;
 
 /// Learn how strongly faces show an expression, and how it moves their landmarks
@@ -61,59 +61,36 @@ pub struct Args {
     report: ReportArgs,
 }
 
-fn share(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(share) if (0.0..=0.9).contains(&share) => Ok(share),
-        _ => Err("expected a number from 0 to 0.9".to_owned()),
-    }
-}
-
 /// Runs the command.
 pub fn run(args: &Args) -> miette::Result<()> {
-    check_output(&args.out, "kin")?;
+    let session = Session::begin(&args.out, args.seed, args.json, &args.report)?;
     args.precision.check("faces", None)?;
-    args.report.check(&args.out)?;
     if args.resume {
         eprintln!("{}: faces keep no checkpoint, training from the beginning", args.out.display());
     }
-    let bar = spinner();
-    bar.set_message("reading the landmarks");
+    session.say("reading the landmarks");
     let faces = landmarks::read(&args.landmarks, Some(&args.attribute)).into_diagnostic()?;
     let out = hold_out(&faces, args.hold_out, args.seed);
-    let part = |held: bool| {
-        let chosen = faces.iter().zip(&out).filter(|(_, out)| **out == held);
-        chosen.map(|(face, _)| face.clone()).collect::<Vec<Face>>()
-    };
-    let (kept, held) = (part(false), part(true));
-    bar.set_message(format!("ranking {} faces", kept.len()));
+    let (kept, held) = (part(&faces, &out, false), part(&faces, &out, true));
+    session.say(format!("ranking {} faces", kept.len()));
     let options = TrainOptions { clusters: args.clusters, hidden: args.hidden, seed: args.seed };
     let trained = train(&kept, &args.attribute, &options)
         .into_diagnostic()
         .wrap_err_with(|| args.landmarks.display().to_string())?;
 
-    let input = fingerprint(&args.landmarks).into_diagnostic();
-    let mut provenance = Provenance {
-        tool: format!("kinesic {}", env!("CARGO_PKG_VERSION")),
-        command: command_line(),
-        seed: args.seed,
-        inputs: vec![input.wrap_err_with(|| args.landmarks.display().to_string())?],
-        notes: trained.notes.clone(),
-        ..Provenance::default()
-    };
+    let mut provenance = session.provenance(fingerprints([args.landmarks.as_path()])?, trained.notes.clone());
     let preview = PackFile::from_bytes(&trained.model.pack(&provenance));
     let measure = |faces: &[Face]| evaluate(&preview.pack().into_diagnostic()?, faces).into_diagnostic();
     let training = measure(&kept)?;
     let unseen = if held.is_empty() { None } else { Some(measure(&held)?) };
-    provenance.metrics.push(metric("pair_accuracy_training", training.pair_accuracy));
+    provenance.metrics.push(Metric::new("pair_accuracy_training", training.pair_accuracy));
     if let Some(unseen) = &unseen {
-        provenance.metrics.push(metric("pair_accuracy_people_held_out", unseen.pair_accuracy));
-        provenance.metrics.push(metric("spearman_people_held_out", unseen.spearman));
+        provenance.metrics.push(Metric::new("pair_accuracy_people_held_out", unseen.pair_accuracy));
+        provenance.metrics.push(Metric::new("spearman_people_held_out", unseen.spearman));
     }
     let bytes = trained.model.pack(&provenance);
-    write_whole(&args.out, &bytes)?;
-    let file = PackFile::from_bytes(&bytes);
-    args.report.write(&args.out, &file, page(&trained, &training, unseen.as_ref(), &file, &kept)?)?;
-    bar.finish_and_clear();
+    let file = session.write(&bytes)?;
+    let page = page(&trained, &training, unseen.as_ref(), &file, &kept)?;
     let summary = Summary {
         pack: args.out.display().to_string(),
         bytes: bytes.len(),
@@ -124,18 +101,13 @@ pub fn run(args: &Args) -> miette::Result<()> {
         training: &training,
         held_out: unseen.as_ref(),
     };
-    if args.json {
-        return print_json(&summary);
-    }
-    if training.pairs == 0 {
-        return Err(miette!("no two faces have different labels"));
-    }
-    print(&summary);
-    Ok(())
-}
-
-fn metric(name: &str, value: f64) -> Metric {
-    Metric { name: name.to_owned(), value }
+    session.finish(&file, page, None, &summary, |summary| {
+        if summary.training.pairs == 0 {
+            return Err(miette!("no two faces have different labels"));
+        }
+        print(summary);
+        Ok(())
+    })
 }
 
 #[derive(Serialize)]

@@ -5,16 +5,19 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::ValueEnum;
-use kinesic_host::mechanics::{Figures, NamedClip, Split, TrainOptions, Trained, propose, train_kept};
-use kinesic_host::pack::{Baselines, InputFile, Metric, PackFile, Provenance};
-use kinesic_host::prepare::{Source, common_rate, fingerprint};
-use miette::{IntoDiagnostic, WrapErr, miette};
+use kinesic_host::mechanics::{
+    Distances, Figures, NamedClip, Split, TrainOptions, Trained, evaluate, propose, train_kept,
+};
+use kinesic_host::pack::{Baselines, Metric};
+use kinesic_host::prepare::{Source, common_rate};
+use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
 
 use super::report::{ReportArgs, mechanics::page};
 use super::resume::ResumeArgs;
+use super::session::Session;
 use crate::commands::clips::{Reading, clip_paths};
-use crate::commands::output::{check_output, command_line, print_json, spinner, write_whole};
+use crate::commands::origin::{fingerprints, name_of};
 use crate::commands::precision::Precision;
 
 /// Learn which pose a body's mechanics ask for, from clips without expression
@@ -92,9 +95,8 @@ enum SplitBy {
 
 /// Runs the command.
 pub fn run(args: &Args) -> miette::Result<()> {
-    check_output(&args.out, "kin")?;
+    let session = Session::begin(&args.out, args.seed, args.json, &args.report)?;
     args.precision.check("body-mechanics networks", Some(Precision::I8))?;
-    args.report.check(&args.out)?;
     if !(0.0..=0.9).contains(&args.hold_out) {
         return Err(miette!("--hold-out {}: expected a part from 0 to 0.9", args.hold_out));
     }
@@ -103,8 +105,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let named = clip_paths(&args.clips)?;
     let pool = clip_paths(&args.pool)?;
     let paths: Vec<&PathBuf> = named.iter().chain(pool.iter().filter(|p| !named.contains(p))).collect();
-    let bar = spinner();
-    bar.set_message(format!("reading {} clips", paths.len()));
+    session.say(format!("reading {} clips", paths.len()));
     let sources: Vec<Source> =
         paths.iter().map(|p| Source::read(p, &options).into_diagnostic()).collect::<Result<_, _>>()?;
     let plain = |index: usize, source: &Source| {
@@ -119,7 +120,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let mut clips = Vec::new();
     for (source, mechanics) in sources.iter().zip(&mechanics) {
         let clip = source.on_rig(&rig, fps).into_diagnostic()?;
-        clips.push(NamedClip { name: source.name(), clip, mechanics: *mechanics });
+        clips.push(NamedClip { name: name_of(&source.name()), clip, mechanics: *mechanics });
     }
     let options = TrainOptions {
         code: usize::from(args.hidden),
@@ -133,19 +134,16 @@ pub fn run(args: &Args) -> miette::Result<()> {
         },
         seed: args.seed,
     };
-    let name = args.out.file_stem().map_or_else(|| "mechanics".to_owned(), |stem| stem.to_string_lossy().into_owned());
+    let name = session.name(None, "mechanics");
     let history = RefCell::new(Vec::new());
     let progress = |stage: &'static str, epoch: usize, epochs: usize, error: f64| {
         history.borrow_mut().push((stage, error));
-        bar.set_message(format!("{stage}: {epoch} of {epochs}, error {error:.4}"));
-        if bar.is_hidden() && (epoch == epochs || epoch.is_multiple_of(10)) {
+        session.say(format!("{stage}: {epoch} of {epochs}, error {error:.4}"));
+        if session.is_silent() && (epoch == epochs || epoch.is_multiple_of(10)) {
             eprintln!("{stage}: epoch {epoch} of {epochs}, error {error:.5}");
         }
     };
-    let prints: Vec<InputFile> = paths
-        .iter()
-        .map(|path| fingerprint(path).into_diagnostic().wrap_err_with(|| path.display().to_string()))
-        .collect::<Result<_, _>>()?;
+    let prints = fingerprints(paths.iter().map(|path| path.as_path()))?;
     // The same options, the same clips in the same order, read in the same way: the same training.
     let options_and_rate = format!("mechanics {options:?} {fps}");
     let clips_by_hash = format!("{prints:?} {mechanics:?}");
@@ -153,23 +151,21 @@ pub fn run(args: &Args) -> miette::Result<()> {
         args.resume.checkpoint(&args.out, &[options_and_rate, clips_by_hash, args.reading.deciding()?])?;
     let trained = train_kept(&rig, &clips, &name, &options, &progress, &mut checkpoint).into_diagnostic()?;
     let inputs = prints.into_iter().zip(&trained.trained_on).filter(|(_, trained)| **trained).map(|(i, _)| i).collect();
-    let provenance = Provenance {
-        tool: format!("kinesic {}", env!("CARGO_PKG_VERSION")),
-        command: command_line(),
-        seed: args.seed,
-        inputs,
-        metrics: metrics(&trained),
-        notes: notes(args, &trained, &mechanics),
-        baselines: Baselines { offset: trained.mean_pose.clone(), affine: trained.linear.weights.clone() },
-    };
+    let mut provenance = session.provenance(inputs, notes(args, &trained, &mechanics));
+    provenance.metrics = metrics(&trained);
+    provenance.baselines = Baselines { offset: trained.mean_pose.clone(), affine: trained.linear.weights.clone() };
     let bytes = args.precision.of(trained.model.pack(&rig, &provenance), &provenance)?;
-    write_whole(&args.out, &bytes)?;
-    let file = PackFile::from_bytes(&bytes);
+    let file = session.write(&bytes)?;
+    // As `kinesic eval` measures it: on the body-mechanics clips that were held back whole, else on those of the training.
+    let unseen = clips.iter().zip(&trained.trained_on).any(|(clip, trained)| clip.mechanics && !trained);
+    let measured =
+        clips.iter().zip(&trained.trained_on).filter(|(clip, trained)| clip.mechanics && **trained != unseen);
+    let measured: Vec<_> = measured.map(|(clip, trained)| (clip.name.clone(), clip.clip.clone(), *trained)).collect();
+    let pack = file.pack().into_diagnostic()?;
+    let distances = evaluate(&pack, &rig, &provenance.baselines, &[], &measured).into_diagnostic()?.distances;
     // A plain clip that was not trained on shows more than one that was.
     let shown = (0..clips.len()).filter(|i| clips[*i].mechanics).min_by_key(|i| trained.trained_on[*i]).unwrap_or(0);
-    args.report.write(&args.out, &file, page(&trained, &history.take(), &clips[shown], &rig, &file)?)?;
-    checkpoint.finish();
-    bar.finish_and_clear();
+    let page = page(&trained, (&distances, unseen), &history.take(), &clips[shown], &rig, &file)?;
     let summary = Summary {
         pack: args.out.display().to_string(),
         bytes: bytes.len(),
@@ -181,14 +177,14 @@ pub fn run(args: &Args) -> miette::Result<()> {
         split: args.split.to_possible_value().map_or_else(String::new, |v| v.get_name().to_owned()),
         held_back: trained.held_back.clone(),
         training: trained.training.clone(),
+        distances,
         seconds: begun.elapsed().as_secs_f64(),
         peak_memory_mib: peak_memory(),
     };
-    if args.json {
-        return print_json(&summary);
-    }
-    summary.print();
-    Ok(())
+    session.finish(&file, page, Some(checkpoint), &summary, |summary| {
+        summary.print();
+        Ok(())
+    })
 }
 
 fn notes(args: &Args, trained: &Trained, mechanics: &[bool]) -> Vec<String> {
@@ -209,7 +205,7 @@ fn metrics(trained: &Trained) -> Vec<Metric> {
             ("linear_deg", f.linear_deg),
             ("mean_pose_deg", f.mean_pose_deg),
         ]
-        .map(|(name, value)| Metric { name: format!("{prefix}_{name}"), value })
+        .map(|(name, value)| Metric::new(format!("{prefix}_{name}"), value))
     };
     let held_back = trained.held_back.iter().flat_map(|f| of("held_back", f));
     held_back.chain(of("training", &trained.training)).collect()
@@ -227,6 +223,7 @@ struct Summary {
     split: String,
     held_back: Option<Figures>,
     training: Figures,
+    distances: Distances,
     seconds: f64,
     peak_memory_mib: Option<f64>,
 }
@@ -249,6 +246,11 @@ impl Summary {
         row("stacked, degrees a joint", |f| f.geodesic_deg);
         row("linear regression, degrees", |f| f.linear_deg);
         row("mean pose, degrees", |f| f.mean_pose_deg);
+        let Distances { predicted, linear, mean_pose } = &self.distances;
+        println!("all joints, whole clips: RMS joint distance, cm; mean angle, degrees: all joints, leaves");
+        for (name, d) in [("stacked", predicted), ("linear regression", linear), ("mean pose", mean_pose)] {
+            println!("{name:32} {:>12.2} {:>12.2} {:>12.2}", d.cm, d.degrees.all, d.degrees.leaves);
+        }
         let memory = self.peak_memory_mib.map_or_else(String::new, |m| format!(", peak memory {m:.0} MiB"));
         println!("{}: {} bytes, {:.0} s{memory}", self.pack, self.bytes, self.seconds);
     }

@@ -6,6 +6,7 @@ mod face;
 mod mechanics;
 mod report;
 mod resume;
+mod session;
 mod translate;
 
 use clap::Subcommand;

@@ -4,20 +4,23 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 use kinesic_host::clip::Clip;
-use kinesic_host::pack::{InputFile, Metric, PackFile, Provenance};
-use kinesic_host::prepare::{Source, common_rate, fingerprint};
+use kinesic_host::measure::turns::Turns;
+use kinesic_host::pack::{Metric, PackFile};
+use kinesic_host::prepare::{Source, common_rate};
 use kinesic_host::reached::Reached;
 use kinesic_host::translate::{
     AFFINE, Alignment, Base, Candidate, FormChoice, NamedPair, Poles, Report, Stage, TrainOptions, TrainPair, Trained,
     evaluate, plausible, train_kept,
 };
-use miette::{IntoDiagnostic, WrapErr};
+use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
 
 use super::report::{ReportArgs, translate::page};
 use super::resume::ResumeArgs;
+use super::session::Session;
+use crate::commands::angles;
 use crate::commands::clips::{Pairs, Reading};
-use crate::commands::output::{check_output, command_line, print_json, spinner, write_whole};
+use crate::commands::origin::{fingerprints, name_of};
 use crate::commands::precision::Precision;
 
 /// Learn to translate one manner of moving into another, from pairs of clips
@@ -105,45 +108,57 @@ enum Mirror {
     Off,
 }
 
+/// Refuses a rate far above that of every clip: it holds nothing more, and the work grows faster than the rate.
+fn check_rate<'a>(fps: f64, clips: impl Iterator<Item = &'a Clip>) -> miette::Result<()> {
+    let fastest = clips.map(Clip::fps).fold(60.0, f64::max);
+    // Frame times are written with few digits.
+    // What is no rate at all is refused where clips are resampled.
+    if fps.is_nan() || fps <= 1.01 * fastest {
+        return Ok(());
+    }
+    Err(miette!(
+        help = "leave --fps out to take the rate of the slowest clip",
+        "--fps {fps}: expected at most {fastest:.0}, the rate of the fastest clip (at least 60): frames in between hold nothing new, and fitting \
+         them takes hours"
+    ))
+}
+
 /// Runs the command.
 pub fn run(args: &Args) -> miette::Result<()> {
-    check_output(&args.out, "kin")?;
+    let session = Session::begin(&args.out, args.seed, args.json, &args.report)?;
     args.precision.check("translators", Some(Precision::I16))?;
-    args.report.check(&args.out)?;
     let paths = args.pairs.paths()?;
     let options = args.reading.options()?;
-    let bar = spinner();
-    bar.set_message(format!("reading {} clips", 2 * paths.len()));
+    session.say(format!("reading {} clips", 2 * paths.len()));
     let read = |path: &PathBuf| Source::read(path, &options).into_diagnostic();
     let sources =
         paths.iter().map(|(a, b)| Ok((read(a)?, read(b)?))).collect::<miette::Result<Vec<(Source, Source)>>>()?;
     let fps = args.fps.unwrap_or_else(|| common_rate(sources.iter().flat_map(|(a, b)| [&a.clip, &b.clip])));
+    check_rate(fps, sources.iter().flat_map(|(a, b)| [&a.clip, &b.clip]))?;
     let rig = sources[0].0.rig().into_diagnostic()?;
     let on_rig = |source: &Source| source.on_rig(&rig, fps).into_diagnostic();
-    let mut pairs = Vec::new();
-    let mut clips = Vec::new();
-    for (source, target) in &sources {
-        let (neutral, styled) = (on_rig(source)?, on_rig(target)?);
-        pairs.push(TrainPair {
-            source_name: source.name(),
-            target_name: target.name(),
-            source: rig.locals(&rig.poses(&neutral)),
-            target: rig.locals(&rig.poses(&styled)),
-        });
-        clips.push((neutral, styled));
-    }
-    let style = args.style.clone().unwrap_or_else(|| file_stem(&args.out));
-    let prints: Vec<InputFile> = paths
-        .iter()
-        .flat_map(|(a, b)| [a, b])
-        .map(|path| fingerprint(path).into_diagnostic().wrap_err_with(|| path.display().to_string()))
-        .collect::<Result<_, _>>()?;
+    let clips =
+        sources.iter().map(|(a, b)| Ok((on_rig(a)?, on_rig(b)?))).collect::<miette::Result<Vec<(Clip, Clip)>>>()?;
+    let poses = |clips: &mut dyn Iterator<Item = &Clip>| clips.map(|clip| rig.poses(clip)).collect::<Vec<_>>();
+    let source_poses = poses(&mut clips.iter().map(|(neutral, _)| neutral));
+    let target_poses = poses(&mut clips.iter().map(|(_, styled)| styled));
+    let all: Vec<_> = source_poses.iter().chain(&target_poses).map(Vec::as_slice).collect();
+    let rig = rig.centred(&all);
+    let pair = |((source, target), (neutral, styled)): (&(Source, Source), (&Vec<_>, &Vec<_>))| TrainPair {
+        source_name: name_of(&source.name()),
+        target_name: name_of(&target.name()),
+        source: rig.locals(neutral),
+        target: rig.locals(styled),
+    };
+    let pairs: Vec<TrainPair> = sources.iter().zip(source_poses.iter().zip(&target_poses)).map(pair).collect();
+    let style = session.name(args.style.as_ref(), "style");
+    let prints = fingerprints(paths.iter().flat_map(|(a, b)| [a.as_path(), b.as_path()]))?;
     // The same options, the same clips in the same order, read in the same way: the same training.
     let deciding = [format!("translate {:?} {fps}", args.options()), format!("{prints:?}"), args.reading.deciding()?];
     let mut checkpoint = args.resume.checkpoint(&args.out, &deciding)?;
     let reached = Reached::new(&mut checkpoint).into_diagnostic()?;
     let progress = |stage| {
-        bar.set_message(match stage {
+        session.say(match stage {
             Stage::Align => "aligning the clips",
             Stage::Validate => "comparing forms, orders and penalties",
             Stage::Fit => "fitting",
@@ -161,35 +176,23 @@ pub fn run(args: &Args) -> miette::Result<()> {
             target: (&pair.target_name, styled),
         })
         .collect();
-    let mut provenance = Provenance {
-        tool: format!("kinesic {}", env!("CARGO_PKG_VERSION")),
-        command: command_line(),
-        seed: args.seed,
-        inputs: prints,
-        metrics: Vec::new(),
-        notes: notes(&trained),
-        baselines: trained.baselines.clone(),
-    };
-    let poses = |clips: &mut dyn Iterator<Item = &Clip>| clips.map(|clip| rig.poses(clip)).collect::<Vec<_>>();
+    let turns = Turns::of_pairs(&rig, clips.iter().map(|(a, b)| (a, b))).into_diagnostic()?;
+    let mut provenance = session.provenance(prints, notes(&trained));
+    (provenance.baselines, provenance.turns) = (trained.baselines.clone(), turns.numbers());
     let preview = PackFile::from_bytes(&args.precision.of(trained.model.pack(&rig, &provenance), &provenance)?);
-    let sources = poses(&mut clips.iter().map(|(neutral, _)| neutral));
-    let targets = poses(&mut clips.iter().map(|(_, styled)| styled));
     trained.model.strength =
-        plausible(&preview.pack().into_diagnostic()?, &rig, &sources, &targets).into_diagnostic()?;
-    let report = evaluate(&preview.pack().into_diagnostic()?, &rig, &trained.baselines, &named).into_diagnostic()?;
+        plausible(&preview.pack().into_diagnostic()?, &rig, &source_poses, &target_poses).into_diagnostic()?;
+    let pack = preview.pack().into_diagnostic()?;
+    let report = evaluate(&pack, &rig, &trained.baselines, Some(&turns), &named).into_diagnostic()?;
     provenance.metrics = metrics(&trained, &report);
     let bytes = args.precision.of(trained.model.pack(&rig, &provenance), &provenance)?;
-    write_whole(&args.out, &bytes)?;
-    let file = PackFile::from_bytes(&bytes);
-    args.report.write(&args.out, &file, page(&trained, &report, &named[0], &rig, &file)?)?;
-    checkpoint.finish();
-    bar.finish_and_clear();
-    if args.json {
-        print_json(&Summary::new(args, &trained, &report, bytes.len(), fps))
-    } else {
-        print(args, &trained, &report, bytes.len(), fps);
+    let file = session.write(&bytes)?;
+    let page = page(&trained, &report, &named[0], &rig, &file)?;
+    let summary = Summary::new(args, &trained, &report, bytes.len(), fps);
+    session.finish(&file, page, Some(checkpoint), &summary, |summary| {
+        print(summary, &trained);
         Ok(())
-    }
+    })
 }
 
 impl Args {
@@ -215,10 +218,6 @@ impl Args {
             },
         }
     }
-}
-
-fn file_stem(path: &std::path::Path) -> String {
-    path.file_stem().map_or_else(|| "style".to_owned(), |stem| stem.to_string_lossy().into_owned())
 }
 
 /// As on the command line.
@@ -272,13 +271,14 @@ fn notes(trained: &Trained) -> Vec<String> {
 }
 
 fn metrics(trained: &Trained, report: &Report) -> Vec<Metric> {
-    let metric = |name: &str, value: f64| Metric { name: name.to_owned(), value };
     vec![
-        metric("validation_cm", trained.candidate.1),
-        metric("training_error_cm", report.errors.error_cm),
-        metric("training_identity_cm", report.errors.identity_cm),
-        metric("training_offset_cm", report.errors.offset_cm),
-        metric("training_affine_cm", report.errors.affine_cm),
+        Metric::new("validation_cm", trained.candidate.1),
+        Metric::new("training_error_cm", report.errors.error_cm),
+        Metric::new("training_identity_cm", report.errors.identity_cm),
+        Metric::new("training_offset_cm", report.errors.offset_cm),
+        Metric::new("training_affine_cm", report.errors.affine_cm),
+        Metric::new("training_error_degrees", report.errors.degrees.error.all),
+        Metric::new("training_identity_degrees", report.errors.degrees.identity.all),
     ]
 }
 
@@ -315,7 +315,7 @@ impl<'a> Summary<'a> {
     }
 }
 
-fn print(args: &Args, trained: &Trained, report: &Report, bytes: usize, fps: f64) {
+fn print(summary: &Summary, trained: &Trained) {
     println!("alignment      {:<10} error on the training pairs, cm", "");
     for (way, error) in &trained.alignments {
         let mark = if *way == trained.alignment { "*" } else { " " };
@@ -326,14 +326,17 @@ fn print(args: &Args, trained: &Trained, report: &Report, bytes: usize, fps: f64
         let mark = if *candidate == trained.candidate.0 { "*" } else { " " };
         println!("             {mark} {error:8.2}  {}", describe(candidate));
     }
-    println!("training pairs, aligned RMS joint distance, cm");
-    println!("               identity {:8.2}", report.errors.identity_cm);
-    println!("               offset   {:8.2}", report.errors.offset_cm);
-    println!("               affine   {:8.2}", report.errors.affine_cm);
-    println!("               pack     {:8.2}", report.errors.error_cm);
+    let errors = &summary.training.errors;
+    println!("training pairs: aligned RMS joint distance, cm; mean angle, degrees: all joints, leaves");
+    let cm = [errors.identity_cm, errors.offset_cm, errors.affine_cm, errors.error_cm];
+    for (cm, (name, degrees)) in cm.into_iter().zip(angles::columns(errors)) {
+        let [all, leaves] = degrees.map_or([f64::NAN; 2], |degrees| [degrees.all, degrees.leaves]);
+        println!("               {name:<8} {cm:8.2} {all:8.2} {leaves:8.2}");
+    }
     for note in notes(trained).iter().skip(4) {
         println!("note: {note}");
     }
     let [low, high] = trained.model.strength;
-    println!("{}: {bytes} bytes, {fps} frames a second, plausible strengths {low} to {high}", args.out.display());
+    let Summary { pack, bytes, frame_rate, .. } = summary;
+    println!("{pack}: {bytes} bytes, {frame_rate} frames a second, plausible strengths {low} to {high}");
 }

@@ -22,6 +22,8 @@ use spline::Spline;
 
 pub use resample::ResampleError;
 
+/// Farthest that a landmark may be asked to move, in the face's unit: more than a third of the height of a face. What folds is damped anyway.
+const FARTHEST: f64 = 1.5;
 /// Least Jacobian that counts as unfolded; 1 is unchanged.
 const UNFOLDED: f64 = 0.02;
 /// First damping of the spline, and the factor by which it grows while the map folds.
@@ -40,6 +42,19 @@ pub enum WarpError {
     /// The landmarks are no face.
     #[error("the landmarks are no face: they are not finite, or in one place")]
     NoFace,
+    /// Farther than any expression moves a face.
+    #[error(
+        "landmark {landmark} is to move by {found:.3e} pixels, at most {most:.1} (one and a half times the unit of the face) are warped: ask for \
+         less, or check the pack"
+    )]
+    Far {
+        /// Index of the landmark.
+        landmark: usize,
+        /// How far, pixels.
+        found: f64,
+        /// The farthest, pixels.
+        most: f64,
+    },
     /// An offset is not a number.
     #[error("the offset of landmark {landmark} is not finite")]
     Offset {
@@ -65,6 +80,12 @@ impl Warp {
         let scale = f64::from(FaceFrame::of(landmarks).ok_or(WarpError::NoFace)?.scale());
         if let Some(landmark) = offsets.iter().position(|offset| !offset.iter().all(|x| x.is_finite())) {
             return Err(WarpError::Offset { landmark });
+        }
+        // The region that moves grows with the offsets, and what a warp costs with the region.
+        let length = |[x, y]: &[f32; 2]| f64::from(*x).hypot(f64::from(*y));
+        if let Some((landmark, found)) = offsets.iter().map(length).enumerate().find(|(_, far)| *far > FARTHEST * scale)
+        {
+            return Err(WarpError::Far { landmark, found, most: FARTHEST * scale });
         }
         let [from, offset] = [landmarks, offsets].map(|of| of.map(|[x, y]| Vector2::new(f64::from(x), f64::from(y))));
         let to = apart(&from, &std::array::from_fn(|i| from[i] + offset[i]));

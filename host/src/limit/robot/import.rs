@@ -2,19 +2,22 @@
 
 use std::f64::consts::{PI, TAU};
 
-use kinesic::limit::JointKind;
 use kinesic::model::LoadError;
+use kinesic::rig::JointKind;
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::stand::{rig_joint, world, zero};
-use super::{Entry, Motion, Robot, RobotError, RobotMap, UrdfJoint, kind_name};
+use super::{Entry, MapKind, Mimic, Motion, Robot, RobotError, RobotMap, UrdfJoint};
 use crate::clip::Canonical;
 use crate::clip::map::nearest;
-use crate::limit::{JointLimit, LimitsModel};
-use crate::rig::Rig;
+use crate::limit::{HeightLimit, JointLimit, LimitsModel};
+use crate::rig::{JointCoordinates, Rig};
 
 /// Axes of a chain may be this far from a right angle (cosine; half a degree): a `rpy` of 1.57 is meant to be a quarter turn.
 const SQUARE: f64 = 1e-2;
+
+/// Bounds beyond this mean that there are none, rad: no robot counts 160 turns, and degrees stay below.
+const UNLIMITED: f64 = 1e3;
 
 /// Rates that stand in where the map has none of its own.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -30,7 +33,7 @@ pub struct Rates {
 pub struct Import {
     /// The limits of every joint of the rig.
     pub model: LimitsModel,
-    /// Names of the robot's joints, one list a joint of the rig, in the order of its coordinates.
+    /// Names of the robot's joints, one list per joint of the rig, in the order of its coordinates.
     pub urdf: Vec<Vec<String>>,
     /// What was assumed or changed, one sentence each.
     pub notes: Vec<String>,
@@ -46,29 +49,32 @@ pub fn import(
     rates: Rates,
 ) -> Result<Import, RobotError> {
     let entries = entries(map, rig)?;
-    let joints = robot_joints(robot, rig, &entries)?;
+    let mut joints = robot_joints(robot, rig, &entries)?;
     let frames = robot.frames();
     let turned = zero(robot, &frames, map, rig, &joints);
     let to_world = world(map, rig);
     let mut notes = Vec::new();
+    note_leaders(robot, &mut notes);
     let acceleration = rates.acceleration.or(map.acceleration);
     let velocity = rates.velocity.or(map.velocity);
     let mut limits = Vec::new();
     for (joint, entry) in entries.iter().enumerate() {
         let bone = &rig.skeleton.joints[joint];
         let parent = bone.parent.map_or_else(UnitQuaternion::identity, |parent| turned[parent]);
-        let neutral = parent.inverse() * turned[joint];
+        let reference = (parent.inverse() * turned[joint]).coords.map(|x| x as f32).into();
         let limit = match entry {
-            Some(entry) if entry.kind != Some(JointKind::Free) => {
+            Some(entry) if entry.kind != Some(MapKind::Free) => {
                 let axis =
                     |at: &usize| turned[joint].inverse() * (to_world * (frames[*at].rotation * robot.joints[*at].axis));
                 let axes: Vec<Vector3<f64>> = joints[joint].iter().map(axis).collect();
                 let rows = rows(robot, &joints[joint], entry, velocity, acceleration, &mut notes)?;
-                Some(limit(entry, &axes, &rows, robot, &joints[joint], &mut notes)?)
+                let mut limit = limit(entry, &axes, &rows, robot, &mut joints[joint], &mut notes)?;
+                limit.coordinates.reference = reference;
+                Some(limit)
             }
             _ => None,
         };
-        limits.push((limit, neutral));
+        limits.push((limit, reference));
     }
     // A free joint without rates of its own is as fast as the fastest servo.
     let fastest = limits.iter().filter_map(|(limit, _)| Some(limit.as_ref()?.velocity[0])).fold(0.0, f32::max);
@@ -80,27 +86,35 @@ pub fn import(
             .ok_or_else(|| no_acceleration("joints without an entry"))
     };
     let joints_of = |joint: usize| joints[joint].iter().map(|at| robot.joints[*at].name.clone()).collect::<Vec<_>>();
-    let mut rows = Vec::new();
-    for (joint, (limit, neutral)) in limits.into_iter().enumerate() {
+    let own = rig.joint_coordinates();
+    let mut all = Vec::new();
+    for (joint, (limit, reference)) in limits.into_iter().enumerate() {
         let entry = entries[joint];
-        let limit = match limit {
+        all.push(match limit {
             Some(limit) => limit,
             None if map.others_fixed && entry.is_none() && joint > 0 => {
-                JointLimit::hinge([1.0, 0.0, 0.0], [0.0; 2], rate, change(None)?)
+                let coordinates = JointCoordinates { reference, ..JointCoordinates::new(JointKind::Fixed) };
+                JointLimit { coordinates, ..JointLimit::fixed() }
             }
             None => {
-                let own = entry.and_then(|entry| entry.velocity.as_ref());
-                JointLimit::free(
-                    own.map_or(rate, |own| own[0] as f32),
+                let speed = entry.and_then(|entry| entry.velocity.as_ref());
+                let free = JointLimit::free(
+                    speed.map_or(rate, |speed| speed[0] as f32),
                     change(entry.and_then(|e| e.acceleration.as_ref()))?,
-                )
+                );
+                // About the skeleton's own middle, unless the map says where the bone is at rest.
+                let own =
+                    if entry.is_some_and(|entry| entry.bone.is_some()) { reference } else { own[joint].reference };
+                JointLimit { coordinates: JointCoordinates { reference: own, ..free.coordinates }, ..free }
             }
-        };
-        let q = neutral.coords.map(|x| x as f32);
-        rows.push(JointLimit { neutral: [q.x, q.y, q.z, q.w], ..limit });
+        });
     }
-    let model = LimitsModel { name: name.to_owned(), frame_rate, meta: map.meta, joints: rows };
-    model.check().map_err(|error| refused(&error, rig))?;
+    let mut height = LimitsModel::standing(rig, &map.meta);
+    if let Some([lower, upper]) = map.height.map(|range| range.map(|x| x as f32)) {
+        height = HeightLimit { lower, upper, rest: height.rest.max(lower).min(upper), ..height };
+    }
+    let model = LimitsModel { name: name.to_owned(), frame_rate, meta: map.meta, height, joints: all };
+    model.tables(rig).map_err(|error| refused(&error, &model, rig))?;
     Ok(Import { model, urdf: (0..entries.len()).map(joints_of).collect(), notes })
 }
 
@@ -125,9 +139,18 @@ fn entries<'m>(map: &'m RobotMap, rig: &Rig) -> Result<Vec<Option<&'m Entry>>, R
             let what = format!("the skeleton's joint '{}' has the entry '{}' already", names[joint], other.joint);
             return Err(RobotError::new(place, what, "keep one of the two"));
         }
-        if entry.urdf.is_empty() && entry.kind != Some(JointKind::Free) {
+        let free = entry.kind == Some(MapKind::Free);
+        if entry.urdf.is_empty() && !free {
             let help = "leave the entry out, or write  { kind = \"free\" }";
             return Err(RobotError::new(place, "found no robot joint, expected one to three", help));
+        }
+        if joint == 0 && !free && rig.frames().travels() {
+            let what = "found robot joints for the root, expected none: it turns freely against the heading";
+            return Err(RobotError::new(
+                place,
+                what,
+                "give them to the skeleton's next joint, as in  spine = \"waist\"",
+            ));
         }
         found[joint] = Some(entry);
     }
@@ -155,8 +178,9 @@ fn robot_joints(robot: &Robot, rig: &Rig, entries: &[Option<&Entry>]) -> Result<
             };
             let found = &robot.joints[at];
             if let Motion::Fixed | Motion::Other(_) = found.motion {
-                let motion = if let Motion::Other(motion) = found.motion { motion } else { "fixed" };
-                let what = format!("'{name}' (line {}) is {motion}, expected revolute or continuous", found.line);
+                let kind = &found.kind;
+                let what =
+                    format!("'{name}' (line {}) is of the type '{kind}', expected revolute or continuous", found.line);
                 return refuse(what, "leave it out of the map: only hinges have angles".to_owned());
             }
             if let Some(mimic) = &found.mimic {
@@ -206,6 +230,41 @@ fn no_acceleration(place: &str) -> RobotError {
     RobotError::new(place, "found no acceleration, expected rad/s^2", help)
 }
 
+/// The joints that follow one, also by way of others, each as `multiplier x + offset` of its angle `x`.
+fn followers<'r>(robot: &'r Robot, leader: &UrdfJoint) -> Vec<(&'r UrdfJoint, Mimic)> {
+    let mut found: Vec<(&UrdfJoint, Mimic)> = Vec::new();
+    let mut open = vec![Mimic { joint: leader.name.clone(), multiplier: 1.0, offset: 0.0 }];
+    while let Some(up) = open.pop() {
+        for follower in &robot.joints {
+            let Some(own) = follower.mimic.as_ref().filter(|own| own.joint == up.joint && own.multiplier != 0.0) else {
+                continue;
+            };
+            // A ring of followers ends where it began.
+            if follower.name == leader.name || found.iter().any(|(known, _)| known.name == follower.name) {
+                continue;
+            }
+            let multiplier = own.multiplier * up.multiplier;
+            let offset = own.multiplier * up.offset + own.offset;
+            found.push((follower, Mimic { joint: leader.name.clone(), multiplier, offset }));
+            open.push(Mimic { joint: follower.name.clone(), multiplier, offset });
+        }
+    }
+    found
+}
+
+/// Followers whose leader is not in the file.
+fn note_leaders(robot: &Robot, notes: &mut Vec<String>) {
+    for joint in &robot.joints {
+        let Some(mimic) = joint.mimic.as_ref().filter(|mimic| robot.find(&mimic.joint).is_none()) else { continue };
+        let near = nearest(&mimic.joint, robot.joints.iter().map(|j| j.name.as_str()));
+        let near = near.map_or(String::new(), |near| format!("; did you mean '{near}'?"));
+        notes.push(format!(
+            "{} (line {}): follows '{}', which is not in the file{near}: its limits are not kept for it",
+            joint.name, joint.line, mimic.joint
+        ));
+    }
+}
+
 /// What each robot joint of an entry may do, its followers' limits included.
 fn rows(
     robot: &Robot,
@@ -227,11 +286,8 @@ fn rows(
                 let help = format!("write velocity = 6.0 into the map's entry '{}', or give --velocity 6", entry.joint);
                 RobotError::new(&place, format!("found {found}, expected rad/s above 0"), help)
             })?;
-        for follower in robot.joints.iter() {
-            let Some(mimic) = follower.mimic.as_ref().filter(|mimic| mimic.joint == joint.name) else { continue };
-            if mimic.multiplier == 0.0 {
-                continue;
-            }
+        notes.extend(joint.notes.iter().cloned());
+        for (follower, mimic) in followers(robot, joint) {
             let ends = [follower.lower, follower.upper].map(|end| Some((end? - mimic.offset) / mimic.multiplier));
             let [low, high] = if mimic.multiplier < 0.0 { [ends[1], ends[0]] } else { ends };
             let tighter = (lower.max(low.unwrap_or(lower)), upper.min(high.unwrap_or(upper)));
@@ -276,6 +332,13 @@ fn bounds(
     }
     // What a <limit> leaves out is 0.
     let (low, high) = (low.unwrap_or(0.0), high.unwrap_or(0.0));
+    if low <= -UNLIMITED && high >= UNLIMITED {
+        notes.push(format!(
+            "{}: bounds of {low:e} and {high:e} are none, kept within half a turn to either side",
+            joint.name
+        ));
+        return Ok((-PI, PI));
+    }
     if low.abs().max(high.abs()) > 4.0 * PI {
         let what = format!("found bounds {low} and {high}, expected radians");
         return Err(RobotError::new(place, what, "these look like degrees: a half turn is 3.1416"));
@@ -292,24 +355,24 @@ fn bounds(
     Ok(cut)
 }
 
-/// The limit of a skeleton joint that one to three robot joints turn.
+/// The limit of a skeleton joint that one to three robot joints turn. Puts `joints` into the order of its coordinates.
 fn limit(
     entry: &Entry,
     axes: &[Vector3<f64>],
     rows: &[Row],
     robot: &Robot,
-    joints: &[usize],
+    joints: &mut [usize],
     notes: &mut Vec<String>,
 ) -> Result<JointLimit, RobotError> {
     let place = format!("[joints] {}", entry.joint);
-    let kind = entry.kind.unwrap_or(if axes.len() == 1 { JointKind::Hinge } else { JointKind::Chain });
-    let fits = match kind {
-        JointKind::Hinge => axes.len() == 1,
-        _ => (2..=3).contains(&axes.len()),
+    let kind = entry.kind.unwrap_or(if axes.len() == 1 { MapKind::Hinge } else { MapKind::Chain });
+    let (fits, expected) = match kind {
+        MapKind::Hinge => (axes.len() == 1, "one"),
+        MapKind::Ball => (axes.len() == 3, "three"),
+        _ => ((2..=3).contains(&axes.len()), "two or three"),
     };
     if !fits {
-        let (kind, expected) = (kind_name(kind), if kind == JointKind::Hinge { "one" } else { "two or three" });
-        let what = format!("found {} robot joints for the kind {kind}, expected {expected}", axes.len());
+        let what = format!("found {} robot joints for the kind {}, expected {expected}", axes.len(), kind.name());
         let help =
             "one is a hinge, two or three at right angles are a chain; give further ones to a neighbouring joint";
         return Err(RobotError::new(place, what, help));
@@ -342,12 +405,31 @@ fn limit(
     if let [a, b] = square[..] {
         square.push(a.cross(&b));
     }
+    let mut rows = rows.to_vec();
+    if kind == MapKind::Ball {
+        let along = along(&square).ok_or_else(|| {
+            let what = "its robot joints do not turn about the skeleton joint's own axes, as a ball's coordinates do";
+            RobotError::new(&place, what, "leave kind out: a chain turns about any axes")
+        })?;
+        let turned = |(at, sign): (usize, f64)| {
+            let Row { lower, upper, rest, .. } = rows[at];
+            let (lower, upper) = if sign < 0.0 { (-upper, -lower) } else { (lower, upper) };
+            Row { lower, upper, rest: rest.map(|rest| sign * rest), ..rows[at] }
+        };
+        let order = along.map(|(at, _)| joints[at]);
+        rows = along.map(turned).to_vec();
+        joints.copy_from_slice(&order);
+    }
     let row = |index: usize| rows.get(index).copied().unwrap_or(Row { lower: 0.0, upper: 0.0, rest: None, ..rows[0] });
     let three = |of: &dyn Fn(Row) -> f32| std::array::from_fn(|index| of(row(index)));
     let axis = |index: usize| square.get(index).map_or([0.0; 3], |axis| axis.map(|x| x as f32).into());
+    let coordinates = match kind {
+        MapKind::Hinge => JointCoordinates { axes: [0, 1, 2].map(axis), ..JointCoordinates::new(JointKind::Hinge) },
+        MapKind::Chain => JointCoordinates { axes: [0, 1, 2].map(axis), ..JointCoordinates::new(JointKind::Chain) },
+        MapKind::Ball | MapKind::Free => JointCoordinates::new(JointKind::Ball),
+    };
     let limit = JointLimit {
-        kind,
-        axes: std::array::from_fn(axis),
+        coordinates,
         velocity: three(&|row| row.velocity as f32),
         acceleration: three(&|row| row.acceleration as f32),
         ..JointLimit::free(1.0, 1.0)
@@ -368,15 +450,38 @@ fn limit(
     Ok(limit)
 }
 
+/// Which of three axes lies along x, y and z, and the sign of each; `None` if one is off by more than half a degree.
+fn along(axes: &[Vector3<f64>]) -> Option<[(usize, f64); 3]> {
+    let find = |own: usize| {
+        let at = axes.iter().position(|axis| axis.norm_squared() - axis[own] * axis[own] < SQUARE * SQUARE)?;
+        Some((at, axes[at][own].signum()))
+    };
+    Some([find(0)?, find(1)?, find(2)?])
+}
+
 /// The device's refusal, with the joint's name.
-fn refused(error: &LoadError, rig: &Rig) -> RobotError {
+fn refused(error: &LoadError, model: &LimitsModel, rig: &Rig) -> RobotError {
     let help = "the range must hold the rest angle; velocity / rate and acceleration / rate^2 must be above 1e-6";
-    match error {
-        LoadError::Value { tensor, index } => {
-            let joint = rig.skeleton.joints.get(*index).map_or("", |joint| &joint.name);
+    let of_joint = |name: &str, column: &str| {
+        RobotError::new(format!("joint '{name}'"), format!("its {column} is not what a limiter takes"), help)
+    };
+    match (error, model.rig(rig)) {
+        (LoadError::Value { tensor, index }, Ok(limited)) => {
             let column = tensor.trim_start_matches("limit/");
-            RobotError::new(format!("joint '{joint}'"), format!("its {column} is not what a limiter takes"), help)
+            let device = limited.frames();
+            if device.travels() && *index == 0 {
+                let height = "height and the root's rates must be what a limiter takes";
+                return RobotError::new("the map", format!("the {column} of the root's height is refused"), height);
+            }
+            let joints = rig.skeleton.joints.iter().zip(device.places());
+            let named = joints.filter(|(_, (kind, first))| kind.coordinates() > 0 && first / 3 == *index);
+            of_joint(&named.map(|(joint, _)| joint.name.as_str()).collect::<Vec<_>>().join("' or '"), column)
         }
-        other => RobotError::new("the table", other.to_string(), "check frame rate, root rates and times of the map"),
+        (LoadError::Value { tensor, index }, Err(_)) => {
+            of_joint(rig.skeleton.joints.get(*index).map_or("", |joint| &joint.name), tensor.trim_start_matches("rig/"))
+        }
+        (other, _) => {
+            RobotError::new("the table", other.to_string(), "check frame rate, root rates and times of the map")
+        }
     }
 }

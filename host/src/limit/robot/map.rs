@@ -5,10 +5,36 @@ use toml::{Table, Value};
 
 use super::RobotError;
 use crate::clip::map::nearest;
-use kinesic::limit::JointKind;
 use kinesic::model::LimitsMeta;
 
-/// What the map says of one joint of the skeleton. Lists have one entry a robot joint.
+/// Which coordinates a map asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MapKind {
+    /// A ball with rates only.
+    Free,
+    /// One angle.
+    Hinge,
+    /// Two or three angles in order.
+    Chain,
+    /// A box of rotation vectors along the joint's own axes.
+    Ball,
+}
+
+impl MapKind {
+    const ALL: [Self; 4] = [Self::Free, Self::Hinge, Self::Chain, Self::Ball];
+
+    /// Its name in a map.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Free => "free",
+            Self::Hinge => "hinge",
+            Self::Chain => "chain",
+            Self::Ball => "ball",
+        }
+    }
+}
+
+/// What the map says of one joint of the skeleton. Lists have one entry per robot joint.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Entry {
     /// Name in the skeleton, or canonical name.
@@ -16,7 +42,7 @@ pub struct Entry {
     /// Robot joints from the trunk outwards.
     pub urdf: Vec<String>,
     /// Which coordinates; else what the number of robot joints says.
-    pub kind: Option<JointKind>,
+    pub kind: Option<MapKind>,
     /// Bounds instead of the URDF's, rad.
     pub lower: Option<Vec<f64>>,
     /// See `lower`.
@@ -48,11 +74,13 @@ pub struct RobotMap {
     pub others_fixed: bool,
     /// Rates of the root, and what happens when frames fail to come.
     pub meta: LimitsMeta,
+    /// Least and greatest height of the root, m; else what the skeleton says.
+    pub height: Option<[f64; 2]>,
     /// The joints, in the file's order.
     pub entries: Vec<Entry>,
 }
 
-const KEYS: [&str; 12] = [
+const KEYS: [&str; 14] = [
     "acceleration",
     "velocity",
     "forward",
@@ -61,9 +89,11 @@ const KEYS: [&str; 12] = [
     "unmapped",
     "root_velocity",
     "root_acceleration",
+    "heading_velocity",
+    "heading_acceleration",
+    "height",
     "hold",
     "decay",
-    "frozen",
     "joints",
 ];
 const ENTRY: [&str; 8] = ["urdf", "kind", "lower", "upper", "velocity", "acceleration", "rest", "bone"];
@@ -131,12 +161,26 @@ impl RobotMap {
             meta: LimitsMeta {
                 root_velocity: time("root_velocity", meta.root_velocity)?,
                 root_acceleration: time("root_acceleration", meta.root_acceleration)?,
+                heading_velocity: time("heading_velocity", meta.heading_velocity)?,
+                heading_acceleration: time("heading_acceleration", meta.heading_acceleration)?,
                 hold: time("hold", meta.hold)?,
                 decay: time("decay", meta.decay)?,
-                frozen: time("frozen", meta.frozen)?,
             },
+            height: height(&table)?,
             entries,
         })
+    }
+}
+
+fn height(table: &Table) -> Result<Option<[f64; 2]>, RobotError> {
+    let Some(value) = table.get("height") else { return Ok(None) };
+    match numbers(value).as_deref() {
+        Some(&[lower, upper]) if lower <= upper => Ok(Some([lower, upper])),
+        _ => Err(RobotError::new(
+            "height",
+            format!("found {value}, expected the least and the greatest height of the root, m"),
+            "as in [0.3, 0.8]",
+        )),
     }
 }
 
@@ -191,8 +235,7 @@ fn entry(joint: &str, value: &Value) -> Result<Entry, RobotError> {
             names(value).ok_or_else(|| refuse("urdf", value, "the name of a robot joint, or a list of names"))?;
     }
     if let Some(value) = table.get("kind") {
-        let kinds = [JointKind::Free, JointKind::Hinge, JointKind::Chain, JointKind::Ball];
-        let kind = value.as_str().and_then(|word| kinds.into_iter().find(|kind| super::kind_name(*kind) == word));
+        let kind = value.as_str().and_then(|word| MapKind::ALL.into_iter().find(|kind| kind.name() == word));
         entry.kind = Some(kind.ok_or_else(|| refuse("kind", value, "free, hinge, chain or ball"))?);
     }
     let count = entry.urdf.len().max(1);

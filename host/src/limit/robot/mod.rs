@@ -12,7 +12,7 @@
 //! A robot joint turns everything beyond it about its axis `w`, root link's frame, all angles zero. Robot joints in a row turn it by
 //! `exp(w1 a1) exp(w2 a2) ...`. With `G` the rotation of the skeleton's joint in the pose in which the robot's angles are zero, and
 //! `P` its parent's, the joint's local rotation is `P^-1 exp(w1 a1) exp(w2 a2) G = (P^-1 G) exp(G^-1 w1 a1) exp(G^-1 w2 a2)`: a chain
-//! with `neutral = P^-1 G` and axes `G^-1 w`.
+//! with `reference = P^-1 G` and axes `G^-1 w`.
 
 mod error;
 mod import;
@@ -22,17 +22,18 @@ mod urdf;
 
 pub use error::RobotError;
 pub use import::{Import, Rates, import};
-pub use map::{Entry, RobotMap};
+pub use map::{Entry, MapKind, RobotMap};
 pub use urdf::{Mimic, Motion, Robot, UrdfJoint};
 
-use kinesic::limit::JointKind;
+use kinesic::rig::JointKind;
 
 /// Name of a kind in maps and tables.
 pub fn kind_name(kind: JointKind) -> &'static str {
     match kind {
-        JointKind::Free => "free",
+        JointKind::Fixed => "fixed",
         JointKind::Hinge => "hinge",
         JointKind::Chain => "chain",
         JointKind::Ball => "ball",
+        JointKind::Slider => "slider",
     }
 }

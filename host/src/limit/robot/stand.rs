@@ -8,6 +8,8 @@ use crate::rig::Rig;
 
 /// Robot joints nearer than this to each other show no direction, m.
 const SHORTEST: f64 = 0.02;
+/// An axis this near to a bone (cosine) twists it.
+const ALONG: f64 = 0.9;
 
 /// Rotation from the robot's root link to the skeleton's world: up to up, forward to where the resting skeleton faces.
 pub(super) fn world(map: &RobotMap, rig: &Rig) -> UnitQuaternion<f64> {
@@ -42,9 +44,18 @@ pub(super) fn zero(
         let given = map.entries.iter().find(|entry| rig_joint(rig, &entry.joint) == Some(joint)).and_then(|e| e.bone);
         let (end, rest) = far_end(rig, joints, joint);
         let seen = end.filter(|_| !map.zero_is_rest).and_then(|end| {
-            let end = frames[*joints[end].first()?].translation.vector;
-            let starts = joints[joint].iter().rev().map(|at| end - frames[*at].translation.vector);
-            starts.into_iter().find(|way| way.norm() > SHORTEST)
+            let place = |at: usize| frames[at].translation.vector;
+            let first = *joints[end].first()?;
+            // A twist of this bone that the next joint was given: the bone ends at that joint's next hinge.
+            let twist = || {
+                let start = place(*joints[joint].last()?);
+                let near = (place(first) - start).norm() <= SHORTEST;
+                let way = joints[end].iter().map(|at| place(*at) - start).find(|way| way.norm() > SHORTEST)?;
+                let axis = frames[first].rotation * robot.joints[first].axis;
+                (near && way.normalize().dot(&axis).abs() > ALONG).then_some(way)
+            };
+            let starts = joints[joint].iter().rev().map(|at| place(first) - place(*at));
+            twist().or_else(|| starts.into_iter().find(|way| way.norm() > SHORTEST))
         });
         let way = given.or(seen).map(|way| to_world * way);
         turned.push(match (way, rest.try_normalize(1e-6)) {

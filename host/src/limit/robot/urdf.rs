@@ -3,7 +3,7 @@
 //! <http://wiki.ros.org/urdf/XML/joint>: metres, radians; an origin is `Rz(yaw) Ry(pitch) Rx(roll)`, the axis is in the joint's frame and
 //! (1, 0, 0) unless given.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use roxmltree::{Document, Node};
@@ -43,6 +43,8 @@ pub struct UrdfJoint {
     pub line: u32,
     /// How it moves.
     pub motion: Motion,
+    /// Its type as the file spells it.
+    pub kind: String,
     /// The joint that moves the link on which this one sits; none on the root link.
     pub parent: Option<usize>,
     /// Its frame in that joint's.
@@ -57,6 +59,8 @@ pub struct UrdfJoint {
     pub velocity: Option<f64>,
     /// Whose angle it follows.
     pub mimic: Option<Mimic>,
+    /// What was made of odd values, one sentence each.
+    pub notes: Vec<String>,
 }
 
 /// A robot's tree of joints, in the file's order.
@@ -71,6 +75,7 @@ pub struct Robot {
 impl Robot {
     /// Reads the text of a URDF.
     pub fn parse(text: &str) -> Result<Self, RobotError> {
+        crowded(text)?;
         let document = Document::parse(text).map_err(|error| {
             RobotError::new(
                 format!("line {}", error.pos().row),
@@ -79,7 +84,8 @@ impl Robot {
             )
         })?;
         let root = document.root_element();
-        let line = |node: Node| document.text_pos_at(node.range().start).row;
+        let ends: Vec<usize> = text.match_indices('\n').map(|(at, _)| at).collect();
+        let line = |node: Node| 1 + ends.partition_point(|end| *end < node.range().start) as u32;
         if let Some(node) = root.descendants().find(|node| node.tag_name().namespace().is_some_and(is_xacro)) {
             return Err(RobotError::new(
                 format!("line {}", line(node)),
@@ -95,14 +101,14 @@ impl Robot {
             ));
         }
         let elements = |name: &'static str| root.children().filter(move |node| node.has_tag_name(name));
-        let links: HashMap<&str, u32> =
-            elements("link").filter_map(|node| Some((node.attribute("name")?, line(node)))).collect();
+        let links: HashSet<&str> = elements("link").filter_map(|node| node.attribute("name")).collect();
+        let mut lines: HashMap<String, u32> = HashMap::new();
         let mut joints: Vec<(UrdfJoint, [&str; 2])> = Vec::new();
         for node in elements("joint") {
             let joint = read(node, line(node))?;
             let place = format!("line {}, joint '{}'", joint.line, joint.name);
-            if let Some((before, _)) = joints.iter().find(|(before, _)| before.name == joint.name) {
-                let what = format!("the name is taken by the joint of line {}, expected one of its own", before.line);
+            if let Some(before) = lines.insert(joint.name.clone(), joint.line) {
+                let what = format!("the name is taken by the joint of line {before}, expected one of its own");
                 return Err(RobotError::new(place, what, "rename one of the two"));
             }
             let mut ends = [""; 2];
@@ -111,7 +117,7 @@ impl Robot {
                     let what = format!("found no <{tag} link=\"...\"/>, expected the link's name");
                     RobotError::new(&place, what, "a joint stands between two links: name both")
                 })?;
-                if !links.contains_key(link) {
+                if !links.contains(link) {
                     let what = format!("its {tag} link '{link}' is not in the file, which has {} links", links.len());
                     return Err(RobotError::new(
                         place,
@@ -142,9 +148,54 @@ impl Robot {
 
     /// The frame of every joint in the root link's, all angles zero.
     pub fn frames(&self) -> Vec<Isometry3<f64>> {
-        let frame = |joint| self.chain(joint).fold(Isometry3::identity(), |frame, at| self.joints[at].origin * frame);
-        (0..self.joints.len()).map(frame).collect()
+        let mut frames: Vec<Option<Isometry3<f64>>> = vec![None; self.joints.len()];
+        for joint in 0..self.joints.len() {
+            // Outwards from the nearest joint whose frame is known.
+            let open: Vec<usize> = self.chain(joint).take_while(|at| frames[*at].is_none()).collect();
+            for at in open.into_iter().rev() {
+                let carrier = self.joints[at].parent.and_then(|parent| frames[parent]);
+                frames[at] = Some(carrier.unwrap_or_else(Isometry3::identity) * self.joints[at].origin);
+            }
+        }
+        frames.into_iter().flatten().collect()
     }
+}
+
+/// Attributes of an element at most. The XML reader compares each with all others of its element.
+const ATTRIBUTES: usize = 1000;
+
+/// Refuses an element with more attributes than any robot's.
+fn crowded(text: &str) -> Result<(), RobotError> {
+    let skipped = [("!--", "-->"), ("![CDATA[", "]]>"), ("?", "?>")];
+    let mut at = 0;
+    while let Some(open) = text[at..].find('<') {
+        at += open + 1;
+        let rest = &text[at..];
+        if let Some((_, end)) = skipped.iter().find(|(begin, _)| rest.starts_with(begin)) {
+            at += rest.find(end).unwrap_or(rest.len());
+            continue;
+        }
+        let start = at;
+        let (mut quote, mut values) = (None, 0);
+        for byte in rest.bytes() {
+            at += 1;
+            match (quote, byte) {
+                (None, b'>') => break,
+                (None, b'"' | b'\'') => quote = Some(byte),
+                (Some(open), byte) if open == byte => (quote, values) = (None, values + 1),
+                _ => {}
+            }
+            if values > ATTRIBUTES {
+                let line = 1 + text[..start].matches('\n').count();
+                return Err(RobotError::new(
+                    format!("line {line}"),
+                    format!("found an element with more than {ATTRIBUTES} attributes, expected a URDF"),
+                    "its elements have ten attributes at most: is this the right file?",
+                ));
+            }
+        }
+    }
+    Ok(())
 }
 
 fn is_xacro(namespace: &str) -> bool {
@@ -189,10 +240,11 @@ fn read(node: Node, line: u32) -> Result<UrdfJoint, RobotError> {
         Some("prismatic") => Motion::Other("prismatic"),
         Some("planar") => Motion::Other("planar"),
         Some("floating") => Motion::Other("floating"),
-        found => {
-            let what = format!("found the type '{}'", found.unwrap_or("(none)"));
+        // Refused where a map names it.
+        Some(_) => Motion::Other("of an unknown type"),
+        None => {
             let help = "expected revolute, continuous, fixed, prismatic, planar or floating";
-            return Err(RobotError::new(place, what, help));
+            return Err(RobotError::new(place, "found no type", help));
         }
     };
     let place_of = three("origin", "xyz")?.unwrap_or_default();
@@ -206,10 +258,34 @@ fn read(node: Node, line: u32) -> Result<UrdfJoint, RobotError> {
             return Err(RobotError::new(place, what, "as in <axis xyz=\"0 1 0\"/>"));
         }
     };
-    let both = |tag, soft, pick: fn(f64, f64) -> f64| -> Result<Option<f64>, RobotError> {
-        let (hard, soft) = (number("limit", tag)?, number("safety_controller", soft)?);
-        Ok(hard.zip(soft).map(|(hard, soft)| pick(hard, soft)).or(hard).or(soft))
+    let bound = |tag: &str, attribute: &str| -> Result<Option<f64>, RobotError> {
+        let text = child(node, tag).and_then(|node| node.attribute(attribute)).map(str::trim);
+        // Infinity stands for a joint without bounds.
+        match text.and_then(|text| text.parse::<f64>().ok()).filter(|value| value.is_infinite()) {
+            Some(value) => Ok(Some(value)),
+            None => number(tag, attribute),
+        }
     };
+    let mut notes = Vec::new();
+    let mut soft = [bound("safety_controller", "soft_lower_limit")?, bound("safety_controller", "soft_upper_limit")?];
+    let hard = [bound("limit", "lower")?, bound("limit", "upper")?];
+    if soft[0].is_some() && soft[0] == soft[1] && hard[0] != hard[1] {
+        notes.push(format!(
+            "{name}: soft limits of {} and {} would lock it, place holders: left out",
+            soft[0].unwrap_or(0.0),
+            soft[1].unwrap_or(0.0)
+        ));
+        soft = [None, None];
+    }
+    let both = |end: usize, pick: fn(f64, f64) -> f64| {
+        hard[end].zip(soft[end]).map(|(hard, soft)| pick(hard, soft)).or(hard[end]).or(soft[end])
+    };
+    let (lower, upper) = (both(0, f64::max), both(1, f64::min));
+    if motion == Motion::Revolute && lower == Some(0.0) && upper == Some(0.0) {
+        notes.push(format!(
+            "{name}: bounds of 0 and 0 lock it; if they are place holders, write lower and upper into the map's entry"
+        ));
+    }
     let mimic = match child(node, "mimic") {
         None => None,
         Some(mimic) => Some(Mimic {
@@ -222,16 +298,18 @@ fn read(node: Node, line: u32) -> Result<UrdfJoint, RobotError> {
         name: name.to_owned(),
         line,
         motion,
+        kind: node.attribute("type").unwrap_or_default().to_owned(),
         parent: None,
         origin: Isometry3::from_parts(
             Translation3::from(place_of),
             UnitQuaternion::from_euler_angles(turn.x, turn.y, turn.z),
         ),
         axis,
-        lower: both("lower", "soft_lower_limit", f64::max)?,
-        upper: both("upper", "soft_upper_limit", f64::min)?,
+        lower,
+        upper,
         velocity: number("limit", "velocity")?,
         mimic,
+        notes,
     })
 }
 
@@ -246,13 +324,15 @@ fn tree(joints: Vec<(UrdfJoint, [&str; 2])>) -> Result<Vec<UrdfJoint>, RobotErro
         }
     }
     let parents: Vec<Option<usize>> = joints.iter().map(|(_, [parent, _])| mover.get(parent).copied()).collect();
-    // As many steps as there are joints lead out of every chain, but not out of a loop.
+    // Every way inwards is walked once, up to where an earlier one passed; a loop leads back into the present one.
+    let mut passed: Vec<Option<usize>> = vec![None; joints.len()];
     for (index, (joint, _)) in joints.iter().enumerate() {
         let mut at = Some(index);
-        for _ in 0..joints.len() {
-            at = at.and_then(|at| parents[at]);
+        while let Some(open) = at.filter(|at| passed[*at].is_none()) {
+            passed[open] = Some(index);
+            at = parents[open];
         }
-        if let Some(inside) = at {
+        if let Some(inside) = at.filter(|at| passed[*at] == Some(index)) {
             let ring = std::iter::successors(parents[inside], |at| parents[*at]).take_while(|at| *at != inside);
             let names: Vec<&str> = ring.chain([inside]).map(|at| joints[at].0.name.as_str()).collect();
             let place = format!("line {}, joint '{}'", joint.line, joint.name);

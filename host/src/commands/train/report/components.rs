@@ -1,16 +1,19 @@
 //! The report of `kinesic train components`.
 
 use kinesic_host::clip::Clip;
-use kinesic_host::components::{FRAME_RATE, Report, Settings, TradeOff, Trained, play_stored};
+use kinesic_host::components::{FRAME_RATE, Report, Settings, ToClip, TradeOff, Trained, play_stored};
 use kinesic_host::pack::PackFile;
 use kinesic_host::report::{Chart, Line, Report as Page, Table, figures};
 use kinesic_host::rig::Rig;
 use miette::IntoDiagnostic;
 
+use crate::commands::angles;
+
 /// The page about a training.
 pub fn page(
     trained: &Trained,
     measured: &Report,
+    to_style: &ToClip,
     curve: &[TradeOff],
     [content, style]: [&Clip; 2],
     rig: &Rig,
@@ -21,7 +24,7 @@ pub fn page(
         "Two clips became sparse basic motions; new ones were learned that stay near the content's and share the style's \
          Gram matrix (Phong, Thanh, Yu 2018).",
     );
-    let result = play_stored(&file.pack().into_diagnostic()?, &Settings::default()).into_diagnostic()?;
+    let result = play_stored(&file.pack().into_diagnostic()?, rig, &Settings::default()).into_diagnostic()?;
     let result = rig.clip(&result, 1.0 / FRAME_RATE);
     page.heading("What it does");
     page.figure(
@@ -39,13 +42,26 @@ pub fn page(
             row("share of joint groups that move", format!("{:.2}", measured.density)),
             row("distance to the style's Gram matrix", format!("{:.3}", measured.style_distance)),
             row("distance to the content's components", format!("{:.3}", measured.content_distance)),
-            row("largest bone error as composed, %", format!("{:.2}", measured.composed_bone_error_max_percent)),
-            row("largest bone error on the device, %", format!("{:.4}", measured.bone_error_max_percent)),
+            row("degrees to the style before, all joints", format!("{:.1}", measured.degrees_before.all)),
+            row("degrees to the style after, all joints", format!("{:.1}", measured.degrees_after.all)),
+            row("degrees to the style before, head, hands, feet", format!("{:.1}", measured.degrees_before.leaves)),
+            row("degrees to the style after, head, hands, feet", format!("{:.1}", measured.degrees_after.leaves)),
             row("jerk against the content's", format!("{:.2}", measured.jerk_ratio)),
+            row("change of the content, RMS joint distance frame for frame, cm", format!("{:.2}", measured.change.cm)),
+            row("content to style clip, aligned RMS joint distance, cm", format!("{:.2}", to_style.identity.cm)),
+            row("result to style clip, the same, cm", format!("{:.2}", to_style.error.cm)),
         ],
     });
+    page.table(&angles::table(
+        &[
+            ("content to style", Some(&to_style.identity.degrees)),
+            ("result to style", Some(&to_style.error.degrees)),
+            ("change of the content", Some(&measured.change.degrees)),
+        ],
+        "Angles. The two clips need not show the same content, so the result need not come near the style clip",
+    ));
     page.heading("How the learning went").chart(&Chart {
-        caption: "Objective of style learning (content + style + bones + smoothness, in squared deviations) over the steps of \
+        caption: "Objective of style learning (content + style + smoothness, in squared deviations) over the steps of \
                   Adam from noise."
             .into(),
         x: "step",
@@ -60,12 +76,12 @@ pub fn page(
     });
     if !curve.is_empty() {
         let row = |point: &TradeOff| {
-            let distances = [point.style_distance, point.content_distance, point.bone_error_mean_percent];
+            let distances = [point.style_distance, point.content_distance];
             std::iter::once(point.style_weight.to_string()).chain(distances.map(|x| format!("{x:.3}"))).collect()
         };
         page.table(&Table {
             caption: "What other style weights would lead to".into(),
-            head: ["style weight", "style distance", "content distance", "mean bone error, %"].map(Into::into).to_vec(),
+            head: ["style weight", "style distance", "content distance"].map(Into::into).to_vec(),
             rows: curve.iter().map(row).collect(),
         });
     }

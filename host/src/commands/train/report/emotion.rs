@@ -1,13 +1,15 @@
 //! The report of `kinesic train emotion`.
 
 use kinesic::Pack;
-use kinesic_host::emotion::Trained;
 use kinesic_host::emotion::evaluate::{Report, Scorer, mean};
 use kinesic_host::emotion::motions::Example;
-use kinesic_host::emotion::play::{Settings, Strengths, play};
+use kinesic_host::emotion::play::{Settings, Strengths, play, seconds};
+use kinesic_host::emotion::{Distances, HostEmotion, Trained};
 use kinesic_host::report::{Chart, Line, Report as Page, Table, figures};
 use kinesic_host::rig::Rig;
 use miette::IntoDiagnostic;
+
+use crate::commands::angles;
 
 /// Strengths along a curve.
 const STEPS: usize = 41;
@@ -17,6 +19,7 @@ pub fn page(
     trained: &Trained,
     training: &Report,
     held_out: Option<&Report>,
+    distances: &[Option<Distances>; 2],
     scorer: &Scorer,
     examples: &[Example],
     pack: &Pack,
@@ -85,11 +88,28 @@ pub fn page(
         100.0 * trained.keyframe_error,
         100.0 * trained.network_error,
     ));
+    let pairs = distances.iter().zip(["trained on", "held out"]);
+    let named: Vec<_> = pairs.filter_map(|(found, name)| Some((name, found.as_ref()?))).collect();
+    page.table(&Table {
+        caption: "What the pack plays against the recorded motions, at the best alignment in time: at the strengths of the clip's \
+                  labels, and at the middle of the ranges, which no label changes. RMS joint distance, cm"
+            .into(),
+        head: ["clips", "middle", "labels"].map(Into::into).to_vec(),
+        rows: (named.iter())
+            .map(|(name, d)| vec![(*name).into(), format!("{:.2}", d.identity.cm), format!("{:.2}", d.error.cm)])
+            .collect(),
+    });
+    for (name, found) in named {
+        page.table(&angles::table(
+            &[("middle", Some(&found.identity.degrees)), ("labels", Some(&found.error.degrees))],
+            &format!("Angles to the clips {name}"),
+        ));
+    }
     page.chart(&Chart {
         caption: "How long the motion takes at each strength, the other strengths in the middle of their range.".into(),
         x: "strength",
         y: "seconds",
-        lines: durations(trained),
+        lines: durations(trained, &HostEmotion::load(pack).into_diagnostic()?),
     });
     for note in &trained.notes {
         page.text(&format!("Note: {note}."));
@@ -145,33 +165,20 @@ fn by_label(trained: &Trained, index: usize, scorer: &Scorer, examples: &[Exampl
     read.chunk_by(|a, b| a.0 == b.0).map(row).collect()
 }
 
-/// Time from the first keyframe to the last, from the network's positions and velocities.
-fn durations(trained: &Trained) -> Vec<Line> {
-    let model = &trained.model;
-    let projection = model.projection();
-    let width = model.mean.len();
-    let seconds = |strengths: &[f64]| {
-        let keys = projection.features(&model.network.apply(strengths));
-        let keys: Vec<&[f64]> = keys.chunks_exact(width).collect();
-        let piece = |pair: &[&[f64]]| {
-            let way: f64 = (0..width / 2).map(|c| (pair[1][c] - pair[0][c]).powi(2)).sum();
-            let speed: f64 = pair[1][width / 2..].iter().map(|v| v * v).sum();
-            (way / speed.max(1e-12)).sqrt().clamp(f64::from(model.duration[0]), f64::from(model.duration[1]))
-        };
-        keys.windows(2).map(piece).sum::<f64>()
-    };
+/// Time from the first keyframe to the last, as the device plays it.
+fn durations(trained: &Trained, emotion: &HostEmotion) -> Vec<Line> {
+    let attributes = &trained.model.attributes;
     let line = |(index, attribute): (usize, &kinesic_host::emotion::Attribute)| {
         let point = |step: usize| {
-            let part = step as f64 / (STEPS - 1) as f64;
-            let at = |other: usize, [low, high]: [f32; 2]| {
-                let part = if other == index { part } else { 0.5 };
-                f64::from(low) + part * f64::from(high - low)
-            };
-            let strengths: Vec<f64> =
-                model.attributes.iter().enumerate().map(|(other, attribute)| at(other, attribute.strength)).collect();
-            (strengths[index], seconds(&strengths))
+            let along = step as f32 / (STEPS - 1) as f32;
+            let mut strengths = Strengths::default();
+            for (other, (to, attribute)) in strengths.iter_mut().zip(attributes).enumerate() {
+                let [low, high] = attribute.strength;
+                *to = low + if other == index { along } else { 0.5 } * (high - low);
+            }
+            (f64::from(strengths[index]), f64::from(seconds(emotion, &strengths)))
         };
         Line { name: attribute.name.clone(), points: (0..STEPS).map(point).collect() }
     };
-    model.attributes.iter().enumerate().map(line).collect()
+    attributes.iter().enumerate().map(line).collect()
 }

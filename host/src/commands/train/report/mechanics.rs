@@ -1,14 +1,17 @@
 //! The report of `kinesic train mechanics`.
 
-use kinesic_host::mechanics::{Figures, NamedClip, Trained, decouple};
+use kinesic_host::mechanics::{Distances, Figures, NamedClip, Trained, decouple};
 use kinesic_host::pack::PackFile;
 use kinesic_host::report::{Chart, Line, Report as Page, Table, figures};
 use kinesic_host::rig::Rig;
 use miette::IntoDiagnostic;
 
+use crate::commands::angles;
+
 /// The page about a training; `history` is the training error of every epoch with its stage, `shown` the clip in the picture.
 pub fn page(
     trained: &Trained,
+    (distances, unseen): (&Distances, bool),
     history: &[(&'static str, f64)],
     shown: &NamedClip,
     rig: &Rig,
@@ -51,6 +54,21 @@ pub fn page(
             row("mean pose, degrees", |f| f.mean_pose_deg),
         ],
     });
+    let clips = if unseen { "held back" } else { "trained on" };
+    let models = [
+        ("mean pose", &distances.mean_pose),
+        ("linear regression", &distances.linear),
+        ("stacked network", &distances.predicted),
+    ];
+    page.table(&Table {
+        caption: format!("RMS joint distance to the observed poses, frame for frame, on body-mechanics clips {clips}"),
+        head: ["model", "cm"].map(Into::into).to_vec(),
+        rows: models.map(|(name, distance)| vec![name.to_owned(), format!("{:.2}", distance.cm)]).to_vec(),
+    });
+    page.table(&angles::table(
+        &models.map(|(name, distance)| (name, Some(&distance.degrees))),
+        &format!("Angles to the observed poses, all joints of the skeleton, on body-mechanics clips {clips}"),
+    ));
     let mut lines: Vec<Line> = Vec::new();
     for (stage, error) in history {
         if lines.last().is_none_or(|line| line.name != *stage) {

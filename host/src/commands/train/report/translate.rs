@@ -8,6 +8,7 @@ use kinesic_host::translate::{Errors, NamedPair, Report, Settings, Trained, play
 use miette::IntoDiagnostic;
 
 use super::super::translate::{alignment_name, describe};
+use crate::commands::angles;
 
 /// The page about a training.
 pub fn page(trained: &Trained, report: &Report, first: &NamedPair, rig: &Rig, file: &PackFile) -> miette::Result<Page> {
@@ -16,7 +17,8 @@ pub fn page(trained: &Trained, report: &Report, first: &NamedPair, rig: &Rig, fi
         "State-space models that turn one manner of moving into another (Dong 2018 after Hsu 2005).",
     );
     let ((_, source), (_, target)) = (first.source, first.target);
-    let poses = play(&file.pack().into_diagnostic()?, &rig.poses(source), &Settings::default()).into_diagnostic()?;
+    let poses =
+        play(&file.pack().into_diagnostic()?, rig, &rig.poses(source), &Settings::default()).into_diagnostic()?;
     let styled = rig.clip(&poses, source.frame_time);
     page.heading("What it does").figure(
         &figures(&[("source", source), ("translated", &styled), ("target", target)]),
@@ -47,6 +49,7 @@ pub fn page(trained: &Trained, report: &Report, first: &NamedPair, rig: &Rig, fi
             .to_vec(),
         rows,
     });
+    page.table(&angles::table(&angles::columns(&report.errors), "Angle to the target, mean of the training pairs"));
     let (joint, name) = most_changed(rig, source, target);
     let height = |clip: &Clip| (0..clip.frames()).map(|frame| clip.positions(frame)[joint].y).collect::<Vec<f64>>();
     page.chart(&Chart {

@@ -1,0 +1,214 @@
+//! Packs with one or two numbers changed: what loads is shown, played, scored and exported in bounded time and memory.
+//!
+//! `KINESIC_CAMPAIGN=20000` packs; a few hundred otherwise.
+
+#[path = "../../tests/tests/common/hostile.rs"]
+mod hostile;
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use hostile::Hostile;
+use kinesic::model::ModelMeta;
+use kinesic_host::clip::JointMap;
+use kinesic_host::embed::rust_module;
+use kinesic_host::emotion::evaluate::Scorer;
+use kinesic_host::gait::{Manner, walk};
+use kinesic_host::limit::HostLimiter;
+use kinesic_host::mechanics::decouple;
+use kinesic_host::pack::PackFile;
+use kinesic_host::prepare::Source;
+use kinesic_host::quantise::{to_int8, to_int16};
+use kinesic_host::rig::Rig;
+use kinesic_host::view::{View, ViewClip, ViewPack, WASM, page};
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
+
+/// A pack of each kind.
+const NAMES: [&str; 9] = [
+    "translator-whole-body.kin",
+    "translator-per-joint.kin",
+    "translator-per-joint-i16.kin",
+    "mechanics.kin",
+    "mechanics-i8.kin",
+    "components.kin",
+    "emotion.kin",
+    "face.kin",
+    "limits.kin",
+];
+
+/// Ends of plausible ranges and what is beyond them.
+const NUMBERS: [f32; 20] = [
+    0.0,
+    -0.0,
+    1e-30,
+    0.01,
+    0.5,
+    1.0,
+    -1.0,
+    4.0,
+    -4.0,
+    12.0,
+    59.0,
+    200.0,
+    1000.0,
+    -1000.0,
+    1e4,
+    1e10,
+    -1e10,
+    f32::MAX,
+    f32::INFINITY,
+    f32::NAN,
+];
+const COUNTS: [u32; 8] = [0, 1, 2, 3, 64, 1 << 20, 1 << 31, u32::MAX];
+
+/// Every f32 and u32 of the metadata.
+fn fields(pack: &mut Hostile) -> (Vec<&mut f32>, Vec<&mut u32>) {
+    let (mut numbers, mut counts) = (vec![&mut pack.frame_rate], Vec::new());
+    for model in &mut pack.models {
+        match model {
+            ModelMeta::Translator(m) => {
+                numbers.extend(&mut m.strength);
+                counts.extend([&mut m.blocks, &mut m.drives]);
+            }
+            ModelMeta::Mechanics(m) => {
+                numbers.extend([&mut m.body_height, &mut m.hip_height, &mut m.gain]);
+                counts.extend([&mut m.hidden, &mut m.code]);
+            }
+            ModelMeta::Components(m) => {
+                numbers.extend(&mut m.strength);
+                counts.extend([&mut m.count, &mut m.frames]);
+            }
+            ModelMeta::Face(m) => {
+                numbers.extend(&mut m.strength);
+                counts.extend([&mut m.clusters, &mut m.hidden]);
+            }
+            ModelMeta::Emotion(m) => {
+                numbers.extend(&mut m.duration);
+                numbers.extend(m.attributes.iter_mut().flatten().flat_map(|attribute| &mut attribute.strength));
+                counts.extend([&mut m.keyframes, &mut m.components, &mut m.hidden]);
+            }
+            ModelMeta::Limits(m) => {
+                numbers.extend([
+                    &mut m.root_velocity,
+                    &mut m.root_acceleration,
+                    &mut m.hold,
+                    &mut m.decay,
+                    &mut m.heading_velocity,
+                    &mut m.heading_acceleration,
+                ]);
+            }
+        }
+    }
+    (numbers, counts)
+}
+
+fn pick<T: Copy>(of: &[T], random: &mut ChaCha8Rng) -> T {
+    of[random.random_range(0..of.len())]
+}
+
+/// Changes one number of the metadata, of a tensor, or the parent of a joint.
+fn change(pack: &mut Hostile, random: &mut ChaCha8Rng) {
+    let (number, count) = (pick(&NUMBERS, random), pick(&COUNTS, random));
+    match random.random_range(0..8) {
+        0..4 => {
+            let (mut numbers, _) = fields(pack);
+            let at = random.random_range(0..numbers.len());
+            *numbers[at] = number;
+        }
+        4 => {
+            let (_, mut counts) = fields(pack);
+            if !counts.is_empty() {
+                let at = random.random_range(0..counts.len());
+                *counts[at] = count;
+            }
+        }
+        5 if !pack.joints.is_empty() => {
+            let at = random.random_range(0..pack.joints.len());
+            pack.joints[at].1 = pick(&[None, Some(0), Some(1), Some(u16::MAX)], random);
+        }
+        _ => {
+            let tensors = pack.f32_tensors();
+            let name = pick(&tensors, random);
+            let (all, place) = (random.random_bool(0.3), random.random::<u32>() as usize);
+            pack.f32s(name, |numbers| match numbers.len() {
+                0 => {}
+                _ if all => numbers.fill(number),
+                len => numbers[place % len] = number,
+            });
+        }
+    }
+}
+
+/// What is shown beside the packs.
+struct Shown {
+    clip: ViewClip,
+}
+
+/// Everything that the host does with a pack. Refusals are welcome, panics are not.
+fn use_everywhere(file: &PackFile, shown: &Shown) -> bool {
+    let Ok(pack) = file.pack() else { return false };
+    let models: Vec<ModelMeta> = pack.metadata().models.iter().collect();
+    let provenance = file.provenance().unwrap();
+    let _ = rust_module(file, "made.kin");
+    // The page of a face makes 49 warps; those of a face that folds take more than this test's time on a busy machine.
+    if models.iter().any(|m| m.face().is_some()) {
+        return true;
+    }
+    let packs = || vec![ViewPack { name: "made".to_owned(), file: file.clone() }];
+    let has = |such: fn(&ModelMeta) -> bool| models.iter().any(such);
+    let mut view = View::default();
+    if has(|m| m.emotion().is_some()) {
+        view.emotions = packs();
+    } else {
+        (view.packs, view.clips) = (packs(), vec![shown.clip.clone()]);
+    }
+    let _ = page("title", "made", &view, WASM);
+    let _ = to_int8(file, &provenance);
+    let _ = to_int16(file, &provenance);
+    let _ = HostLimiter::load(&pack).map(|limiter| limiter.recovery_frames());
+    if let Ok(rig) = Rig::from_pack(&pack)
+        && let Ok(clip) = shown.clip.source.on_rig(&rig, f64::from(pack.metadata().frame_rate))
+    {
+        let _ = decouple(&pack, &rig.poses(&clip));
+        if let Ok(scorer) = Scorer::load(&pack) {
+            let _ = scorer.read(&clip);
+        }
+    }
+    true
+}
+
+#[test]
+fn changed_packs_are_refused_or_used_in_bounded_time_and_memory() {
+    let cases: u64 = std::env::var("KINESIC_CAMPAIGN").map_or(270, |cases| cases.parse().unwrap());
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/packs/v2");
+    let packs = NAMES.map(|name| Hostile::of(&PackFile::read(&folder.join(name)).unwrap()));
+    let clip = walk(&Manner::NEUTRAL, 1.0, 60.0, 0.0, 1);
+    let map = JointMap::detect(&clip.skeleton).unwrap();
+    let source = Source { path: "walk".into(), clip, map, log: None };
+    let shown = Shown { clip: ViewClip { name: "walk".to_owned(), source, target: None } };
+    let (mut loaded, mut slowest) = (0, (Duration::ZERO, 0));
+    for case in 0..cases {
+        let mut random = ChaCha8Rng::seed_from_u64(case);
+        let mut pack = packs[case as usize % packs.len()].clone();
+        for _ in 0..random.random_range(1..3) {
+            change(&mut pack, &mut random);
+        }
+        let begun = Instant::now();
+        let file = PackFile::from_bytes(&pack.bytes());
+        let used = std::panic::catch_unwind(|| use_everywhere(&file, &shown));
+        let used = used.unwrap_or_else(|_| panic!("case {case}, {}", NAMES[case as usize % packs.len()]));
+        loaded += u64::from(used);
+        slowest = slowest.max((begun.elapsed(), case));
+        assert!(begun.elapsed() < Duration::from_secs(30), "case {case} took {:?}", begun.elapsed());
+    }
+    println!("{cases} packs, {loaded} of them loaded; the slowest took {slowest:?}");
+    assert!(loaded > cases / 5 && loaded < cases);
+    // Resident memory at most, of this process; of Linux alone.
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    if let Some(most) = status.lines().find_map(|line| line.strip_prefix("VmHWM:")) {
+        let kilobytes: u64 = most.trim().trim_end_matches(" kB").parse().unwrap();
+        println!("{kilobytes} kB");
+        assert!(kilobytes < 600_000, "{most}");
+    }
+}
