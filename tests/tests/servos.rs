@@ -43,9 +43,7 @@ fn learned(machine: &Machine, takes: u64) {
         target: machine.locals(&rig, lively),
     };
     let pairs: Vec<TrainPair> = training.iter().map(pair).collect();
-    // Both manners were performed on one clock, frame by frame.
-    let options = TrainOptions { alignment: Some(Alignment::Uniform), ..TrainOptions::default() };
-    let trained = train(&rig, &pairs, "lively", FPS, &options, &|_| {}).unwrap();
+    let trained = train(&rig, &pairs, "lively", FPS, &TrainOptions::default(), &|_| {}).unwrap();
     let file = PackFile::from_bytes(&trained.model.pack(&rig, &Provenance::default()));
     let pack = file.pack().unwrap();
     let device = Device::load(&pack).unwrap();
@@ -84,6 +82,27 @@ fn a_lamp_is_learned_from_its_angles() {
 #[test]
 fn a_head_with_antennas_is_learned_from_its_angles() {
     learned(&antennas(), 2);
+}
+
+#[test]
+fn a_machine_whose_clips_drift_apart_is_warped() {
+    let machine = head();
+    let rig = machine.rig();
+    let [calm, lively] = machine.take(1, 40.0);
+    let frames = lively.len() as f64;
+    // Early by up to a second and late by as much, in turn.
+    let moved = |at: usize| at as f64 + FPS * (4.0 * core::f64::consts::PI * at as f64 / frames).sin();
+    let drifting: Vec<Vec<f64>> = (0..lively.len())
+        .map(|at| lively[(moved(at).round().max(0.0) as usize).min(lively.len() - 1)].clone())
+        .collect();
+    let pair = TrainPair {
+        source_name: "calm".into(),
+        target_name: "lively".into(),
+        source: machine.locals(&rig, &calm),
+        target: machine.locals(&rig, &drifting),
+    };
+    let trained = train(&rig, &[pair], "lively", FPS, &TrainOptions::default(), &|_| {}).unwrap();
+    assert_eq!(trained.alignment, Alignment::Warp, "{:?}", trained.alignments);
 }
 
 #[test]

@@ -21,6 +21,9 @@ pub struct Candidate {
 /// Memoryless model that judges alignments.
 pub const JUDGE: Candidate = Candidate { poles: Poles::Static, ..QUICK };
 
+/// The same for a machine. How a servo reacts is what is learned, and a model without states would have a warp hide it.
+pub const MACHINE_JUDGE: Candidate = Candidate { poles: Poles::Identified(24), ..QUICK };
+
 /// The static affine map of each joint: the baseline, as a candidate.
 pub const AFFINE: Candidate =
     Candidate { coordinates: None, poles: Poles::Static, base: Base::Joint, penalty: 1e6, dynamic_penalty: 1e6 };

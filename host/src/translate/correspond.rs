@@ -21,10 +21,10 @@ pub enum Alignment {
 }
 
 impl Alignment {
-    /// Every way that the motions of a rig can correspond. A machine that stands has no other foot.
+    /// Every way that the motions of a rig can correspond. A machine that stands has no steps to be in.
     pub fn of(rig: &Rig) -> Vec<Self> {
-        let mut ways = vec![Self::Warp, Self::Uniform, Self::InStep];
-        ways.extend(rig.frames().travels().then_some(Self::Opposite));
+        let mut ways = vec![Self::Warp, Self::Uniform];
+        ways.extend(rig.frames().travels().then_some([Self::InStep, Self::Opposite]).into_iter().flatten());
         ways
     }
 }

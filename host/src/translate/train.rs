@@ -5,7 +5,7 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use super::baseline;
-use super::candidate::{AFFINE, Candidate, JUDGE, QUICK};
+use super::candidate::{AFFINE, Candidate, JUDGE, MACHINE_JUDGE, QUICK};
 use super::correspond::{Alignment, OPEN, correspond, correspond_output, correspond_plainly};
 use super::dataset::{Correspondence, Mirror, Sequence};
 use super::dynamics::Poles;
@@ -55,6 +55,8 @@ pub const DEFAULT_ORDER: usize = 40;
 const WHOLE_BODY_ORDER: usize = 64;
 /// Part by which a model must be better than the static affine map: less is within what a choice of clips changes.
 const MARGIN: f64 = 0.03;
+/// Factor by which a warp of a machine's clips must be better than one even clock: it leaves out a part of every reaction.
+const ONE_CLOCK: f64 = 1.5;
 /// Times that the styled clip is aligned anew with what the model makes of the source.
 const REALIGNMENTS: usize = 2;
 
@@ -172,7 +174,9 @@ pub fn train_kept(
         })
         .collect::<Result<_, TrainError>>()?;
     let alignments = tried.iter().map(|(way, error, _)| (*way, 100.0 * error)).collect();
-    let best = tried.into_iter().min_by(|a, b| a.1.total_cmp(&b.1));
+    let handicap = |way| if way != Alignment::Uniform && !rig.frames().travels() { ONE_CLOCK } else { 1.0 };
+    let judged = |(way, error, _): &(Alignment, f64, _)| handicap(*way) * error;
+    let best = tried.into_iter().min_by(|a, b| judged(a).total_cmp(&judged(b)));
     let (alignment, _, sequences) = best.ok_or(TrainError::NoPairs)?;
     // An earlier run keeps errors, not sequences.
     let sequences = sequences.map_or_else(|| Ok(align(alignment)?.1), Ok)?;
@@ -266,8 +270,8 @@ pub fn partners(rig: &Rig) -> Vec<usize> {
     (0..rig.joints()).map(|joint| rig.map.mirror_partner(joint).unwrap_or(joint)).collect()
 }
 
-/// Sequences of all pairs under one way of alignment, refined, and the error on the pairs, m, of a memoryless model that has
-/// not seen the block it speaks of.
+/// Sequences of all pairs under one way of alignment, refined, and the error on the pairs, m, of a small model that has not
+/// seen the block it speaks of.
 fn aligned(
     way: Alignment,
     rig: &Rig,
@@ -294,7 +298,8 @@ fn aligned(
         let styled = quick(&current)?;
         current = sequences(&|index, pair| correspond_output(way, &styled[index], &pair.target, fps))?;
     }
-    Ok((held_out_error(rig, &Problem::new(rig, &current, &[], fps), &JUDGE, pairs, Ends::Closed)?, current))
+    let judge = if rig.frames().travels() { JUDGE } else { MACHINE_JUDGE };
+    Ok((held_out_error(rig, &Problem::new(rig, &current, &[], fps), &judge, pairs, Ends::Closed)?, current))
 }
 
 impl TrainPair {
