@@ -59,21 +59,22 @@ fn xia_styles_on_an_unseen_take() {
 fn kinder_gator_on_unseen_people() {
     let Some(data) = kinesic_tests::data("kinder_gator_on_unseen_people") else { return };
     let rows = kinesic_tests::table(&data.join("pairs.tsv"));
-    let child = rows.iter().filter(|row| row["style"] == "child");
     let paths =
         |row: &std::collections::HashMap<String, String>| (data.join(&row["neutral"]), data.join(&row["styled"]));
-    let (test, train): (Vec<_>, Vec<_>) = child.map(paths).partition(|(a, _)| a.display().to_string().contains("p734"));
-    assert!(test.len() >= 6 && train.len() > 60);
-    let report = measure(&train, &test, 30.0);
-    println!(
-        "child: {:.2} cm, affine {:.2}, identity {:.2}",
-        report.errors.error_cm, report.errors.affine_cm, report.errors.identity_cm
-    );
-    // Six people do not determine the turns of Kinect joints of a seventh (docs/quality.md): what is learned must do no harm.
-    assert!(
-        report.errors.error_cm < report.errors.identity_cm + 0.1,
-        "{} {}",
-        report.errors.error_cm,
-        report.errors.identity_cm
-    );
+    let (mut error, mut identity) = (0.0, 0.0);
+    for person in ["p734", "p970"] {
+        let child = rows.iter().filter(|row| row["style"] == "child").map(paths);
+        let (test, train): (Vec<_>, Vec<_>) = child.partition(|(a, _)| a.display().to_string().contains(person));
+        assert!(test.len() >= 6 && train.len() > 60);
+        let errors = measure(&train, &test, 30.0).errors;
+        println!(
+            "child, {person}: {:.2} cm, affine {:.2}, identity {:.2}",
+            errors.error_cm, errors.affine_cm, errors.identity_cm
+        );
+        assert!(errors.error_cm < errors.identity_cm + 0.1, "{person} is worse than doing nothing");
+        error += errors.error_cm / 2.0;
+        identity += errors.identity_cm / 2.0;
+    }
+    // Six people hardly determine the turns of a seventh's Kinect joints: docs/quality.md.
+    assert!(error < identity - 0.5, "{error} {identity}");
 }

@@ -55,6 +55,8 @@ pub const DEFAULT_ORDER: usize = 40;
 const WHOLE_BODY_ORDER: usize = 64;
 /// Part by which a model must be better than the static affine map: less is within what a choice of clips changes.
 const MARGIN: f64 = 0.03;
+/// Part of the whole-body form's error that the per-joint form may have to replace it: on another take it loses more.
+const PER_JOINT: f64 = 0.9;
 /// Factor by which a warp of a machine's clips must be better than one even clock: it leaves out a part of every reaction.
 const ONE_CLOCK: f64 = 1.5;
 /// Times that the styled clip is aligned anew with what the model makes of the source.
@@ -215,7 +217,9 @@ pub fn train_kept(
         let error = || held_out_error(rig, &plain, &AFFINE, pairs, ends);
         forms.push((AFFINE, 100.0 * reached.number("affine", error)?));
     }
-    let best = *forms.iter().min_by(|a, b| a.1.total_cmp(&b.1)).ok_or(TrainError::Undetermined)?;
+    let handicap = |candidate: &Candidate| if candidate.coordinates.is_some() { PER_JOINT } else { 1.0 };
+    let judged = |(candidate, error): &(Candidate, f64)| handicap(candidate) * error;
+    let best = *forms.iter().min_by(|a, b| judged(a).total_cmp(&judged(b))).ok_or(TrainError::Undetermined)?;
     let simple = forms.iter().find(|(candidate, error)| *candidate == AFFINE && best.1 > (1.0 - MARGIN) * error);
     let candidate = *simple.unwrap_or(&best);
 
