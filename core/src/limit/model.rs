@@ -125,11 +125,11 @@ impl<'a, const ROWS: usize> Limiter<'a, ROWS> {
             return Err(LoadError::Shape { tensor, found, expected: rows });
         }
         let height = self.rig.travels().then_some(1);
-        let joints = || self.rig.places().flat_map(|(kind, first)| first..first + kind.coordinates());
-        let used = |index: usize| height == Some(index) || joints().any(|own| own == index);
+        let joints = self.rig.places().flat_map(|(kind, first)| first..first + kind.coordinates());
+        let mut used = height.into_iter().chain(joints).peekable();
         for (index, limit) in self.limits().enumerate() {
             let refuse = |tensor| Err(LoadError::Value { tensor, index: index / 3 });
-            let (limit, used) = (limit, used(index));
+            let used = used.next_if_eq(&index).is_some();
             let Some(Limit { bounds: Bounds { lower, upper, speed, change }, rest }) = limit else {
                 if used {
                     return refuse("limit/velocity");
