@@ -1,5 +1,6 @@
 //! What the user of a running model may turn.
 
+use crate::pose::is_number;
 use crate::rig::Frame;
 
 /// Strength and mask; they may change at any frame.
@@ -26,7 +27,7 @@ impl<const ROWS: usize> Controls<ROWS> {
                 let weight = self.strength * weight;
                 let weight = if weight.is_finite() { weight } else { 0.0 };
                 *y = x + weight * (*y - x);
-                sound &= y.abs() < Frame::<ROWS>::LARGEST;
+                sound &= is_number(*y);
             }
         }
         if sound {

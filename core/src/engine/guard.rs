@@ -1,7 +1,6 @@
 //! Which frames are kept out.
 
-use crate::pose::Pose;
-use crate::rig::Frame;
+use crate::pose::{Pose, is_number};
 
 /// What is wrong with a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,7 +60,7 @@ impl Guard {
         if !coordinates.iter().all(|x| x.is_finite()) {
             return Err(Fault::NotFinite);
         }
-        if !coordinates.iter().all(|x| x.abs() < Frame::<0>::LARGEST) {
+        if !coordinates.iter().all(|x| is_number(*x)) {
             return Err(Fault::Far);
         }
         self.repeated(coordinates.iter().copied())?;

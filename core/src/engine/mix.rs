@@ -1,6 +1,7 @@
 //! Engines side by side.
 
 use super::Engine;
+use crate::pose::is_number;
 use crate::rig::Frame;
 
 /// Several engines on the same frame, and the weighted mean of what they make of it, coordinate by coordinate.
@@ -51,7 +52,7 @@ impl<const ROWS: usize> Sum<ROWS> {
             let share = 1.0 / self.total;
             for (x, sum) in frame.coordinates_mut().iter_mut().zip(self.rows.as_flattened()) {
                 let mean = sum * share;
-                if mean.abs() < Frame::<ROWS>::LARGEST {
+                if is_number(mean) {
                     *x = mean;
                 }
             }

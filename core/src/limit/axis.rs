@@ -23,29 +23,44 @@ pub(super) struct Coordinate {
 }
 
 /// The largest step per frame from which braking by `change` a frame ends within `room`: the inverse of
-/// `D(w) = (n + 1) w - n (n + 1) / 2 change`, `n = floor(w / change)`. Cost: a root, two divisions.
+/// `D(w) = (n + 1) w - n (n + 1) / 2 change`, `n = floor(w / change)`. Cost: a root, two divisions where that is more than one step.
 pub(super) fn reach(room: f32, change: f32) -> f32 {
-    let steps = room.max(0.0) / change;
-    let whole = (0.5 * (sqrt(1.0 + 8.0 * steps) - 1.0)) as u32 as f32;
-    change * (steps / (whole + 1.0) + 0.5 * whole)
+    if room <= change {
+        // No whole step.
+        return most(room, 0.0);
+    }
+    let whole = (0.5 * (sqrt(1.0 + 8.0 * (room / change)) - 1.0)) as u32 as f32;
+    room / (whole + 1.0) + 0.5 * whole * change
+}
+
+/// The greater of two numbers. Neither is NaN, so that one comparison will do.
+pub(super) fn most(a: f32, b: f32) -> f32 {
+    if a < b { b } else { a }
+}
+
+/// `x`, within bounds of which none is NaN.
+pub(super) fn within(x: f32, lower: f32, upper: f32) -> f32 {
+    let x = if x < lower { lower } else { x };
+    if x > upper { upper } else { x }
 }
 
 impl Coordinate {
     /// One frame towards `target`, which lies within the bounds. Cost: about 15 multiply-adds; a root and two divisions more where it
     /// has to catch up, and as many where it has to brake.
+    #[inline]
     pub fn advance(self, target: f32, bounds: &Bounds) -> Self {
         let Bounds { lower, upper, speed, change } = *bounds;
         let error = target - self.at;
         // The target's own step, and beside it what catches up with where the target was.
-        let own = (error - self.left).max(-speed).min(speed);
+        let own = within(error - self.left, -speed, speed);
         let behind = if self.left == 0.0 { 0.0 } else { reach(self.left.abs(), CATCH_UP * change) };
         let wanted = own + if self.left < 0.0 { -behind } else { behind };
-        let step = wanted.max(self.went - change).min(self.went + change).max(-speed).min(speed);
+        let step = within(within(wanted, self.went - change, self.went + change), -speed, speed);
         let room = if step < 0.0 { self.at - lower } else { upper - self.at };
         // `D(w) <= w (w + u) / u`: with so much room there is nothing to brake for.
         let far = step.abs();
         let brakes = if far * (far + change) <= room * change { far } else { reach(room, change) };
-        let at = (self.at + step.max(-brakes).min(brakes)).max(lower).min(upper);
+        let at = within(self.at + within(step, -brakes, brakes), lower, upper);
         Self { at, went: at - self.at, left: target - at }
     }
 }

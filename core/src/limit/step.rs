@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::axis::{Bounds, Coordinate};
+use super::axis::{Bounds, Coordinate, within};
 use super::free;
 use super::model::Limit;
 use super::state::Clamped;
@@ -31,7 +31,7 @@ impl<const ROWS: usize> Limiter<'_, ROWS> {
         let axes = state.axes.as_flattened_mut().iter_mut().zip(frame.coordinates());
         for (limit, (axis, x)) in self.limits().zip(axes) {
             if let Some(Limit { bounds, .. }) = limit {
-                *axis = Coordinate { at: x.max(bounds.lower).min(bounds.upper), went: 0.0, left: 0.0 };
+                *axis = Coordinate { at: within(*x, bounds.lower, bounds.upper), went: 0.0, left: 0.0 };
             }
         }
     }
@@ -74,7 +74,7 @@ impl<const ROWS: usize> Limiter<'_, ROWS> {
             let Some(Limit { bounds, rest }) = limit else { continue };
             let last = axis.at + axis.left;
             let wanted = if told { *x } else { last + (rest - last) * decay };
-            let inside = wanted.max(bounds.lower).min(bounds.upper);
+            let inside = within(wanted, bounds.lower, bounds.upper);
             *axis = axis.advance(inside, &bounds);
             *clamped = Clamped { position: (wanted - inside).abs() > CLAMPED, rate: axis.left.abs() > CLAMPED };
             position = position.saturating_add(u16::from(clamped.position));

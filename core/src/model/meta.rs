@@ -342,19 +342,25 @@ impl<'a, T: Deserialize<'a>> List<'a, T> {
     pub fn iter(&self) -> impl Iterator<Item = T> + use<'a, T> {
         let mut bytes = self.bytes;
         (0..self.len).map_while(move |_| {
-            let (element, rest) = postcard::take_from_bytes::<T>(bytes).ok()?;
+            let (element, rest) = Self::take(bytes)?;
             bytes = rest;
             Some(element)
         })
+    }
+
+    /// Not inlined: the decoder of a model's metadata is large, and it is called from everywhere.
+    #[inline(never)]
+    fn take(bytes: &'a [u8]) -> Option<(T, &'a [u8])> {
+        postcard::take_from_bytes(bytes).ok()
     }
 
     /// True if the bytes hold exactly the announced elements.
     pub(super) fn decodes(&self) -> bool {
         let mut bytes = self.bytes;
         for _ in 0..self.len {
-            match postcard::take_from_bytes::<T>(bytes) {
-                Ok((_, rest)) => bytes = rest,
-                Err(_) => return false,
+            match Self::take(bytes) {
+                Some((_, rest)) => bytes = rest,
+                None => return false,
             }
         }
         bytes.is_empty()

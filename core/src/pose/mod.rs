@@ -17,6 +17,14 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use crate::kernel::sqrt;
 
+/// Numbers from here on are no coordinates.
+pub(crate) const FARTHEST: f32 = 1e6;
+
+/// True for what is finite and nearer than [`FARTHEST`]. By bits: a comparison of floats is dear where they are software.
+pub(crate) fn is_number(x: f32) -> bool {
+    x.to_bits() & !(1 << 31) < FARTHEST.to_bits()
+}
+
 /// Local rotations of up to `JOINTS` joints and the root's position.
 ///
 /// Joints past the skeleton's own are ignored.
@@ -32,8 +40,10 @@ impl<const JOINTS: usize> Pose<JOINTS> {
     /// True if the root is within a thousand kilometres and the first `joints` rotations are nearly of length one: what a
     /// dropped, garbled or non-finite frame is not.
     pub fn is_sound(&self, joints: usize) -> bool {
-        let unit = |q: &UnitQuaternion<f32>| (0.9..1.1).contains(&q.coords.dot(&q.coords));
-        self.root.iter().all(|x| x.abs() < 1e6) && self.rotations.iter().take(joints).all(unit)
+        // Positive floats are in the order of their bits, and software compares bits sooner.
+        let unit =
+            |q: &UnitQuaternion<f32>| (0.9f32.to_bits()..1.1f32.to_bits()).contains(&q.coords.dot(&q.coords).to_bits());
+        self.root.iter().all(|x| is_number(*x)) && self.rotations.iter().take(joints).all(unit)
     }
 
     /// All joints at rest, root at the origin.

@@ -94,7 +94,7 @@ impl Rig<'_> {
     /// The pose at coordinates 0, at the origin.
     pub fn rest<const JOINTS: usize>(&self) -> Pose<JOINTS> {
         let mut pose = Pose::identity();
-        pose.rotations.iter_mut().zip(self.iter()).for_each(|(rotation, joint)| *rotation = joint.reference);
+        pose.rotations.iter_mut().zip(self.iter()).for_each(|(rotation, joint)| *rotation = joint.reference());
         pose
     }
 

@@ -1,6 +1,6 @@
 //! All coordinates of one moment.
 
-use crate::pose::Heading;
+use crate::pose::{FARTHEST, Heading, is_number};
 
 /// The coordinates of one moment, three to a row, and where the body stands. See the [module](super) for the order of rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,14 +49,11 @@ impl<const ROWS: usize> Frame<ROWS> {
         self.rows.as_flattened_mut()
     }
 
-    /// Numbers from here on are no coordinates.
-    pub(crate) const LARGEST: f32 = 1e6;
-
     /// True if every number is finite and below a million. Both ends of a leap are, so it may be twice as far.
     pub fn is_sound(&self) -> bool {
         let mut numbers = self.coordinates().iter().chain(&self.ground);
-        let leaps = self.leap.iter().all(|x| x.abs() <= 2.0 * Self::LARGEST);
-        leaps && numbers.all(|x| x.abs() < Self::LARGEST) && self.heading.is_sound()
+        let leaps = self.leap.iter().all(|x| x.abs() <= 2.0 * FARTHEST);
+        leaps && numbers.all(|x| is_number(*x)) && self.heading.is_sound()
     }
 
     /// The next pose has not travelled: what it is farther on counts as a leap. The last leap is over.

@@ -92,7 +92,10 @@ impl Axes {
         match kind {
             JointKind::Fixed | JointKind::Slider => last,
             JointKind::Ball => ball(log(q), last),
-            JointKind::Hinge => [near(twist(&self.components(q)).unwrap_or(last0), last0, middle0), last1, last2],
+            JointKind::Hinge => {
+                let [axis, ..] = &self.axes;
+                [near(twist(q.w, q.imag().dot(axis)).unwrap_or(last0), last0, middle0), last1, last2]
+            }
             JointKind::Chain => {
                 let [a, b, c] = chain(self.components(q), [last0, last1, self.hand * last2]);
                 let turned = |[a, b, c]: [f32; 3]| {
@@ -113,8 +116,8 @@ impl Axes {
             JointKind::Fixed | JointKind::Slider => UnitQuaternion::identity(),
             JointKind::Ball => exp(Vector3::new(a, b, c)),
             JointKind::Hinge => {
-                let (s, t) = sin_cos(0.5 * a);
-                self.rotation([t, s, 0.0, 0.0])
+                let ([axis, ..], (s, t)) = (&self.axes, sin_cos(0.5 * a));
+                UnitQuaternion::new_unchecked(Quaternion::from_parts(t, axis * s))
             }
             JointKind::Chain => {
                 let (s, t) = sin_cos(0.5 * a);
@@ -127,7 +130,7 @@ impl Axes {
 }
 
 /// The rotation vector `v` of the shorter turn, or the other one that means the same rotation if `last` is nearer to that.
-fn ball(v: Vector3<f32>, last: [f32; 3]) -> [f32; 3] {
+pub(super) fn ball(v: Vector3<f32>, last: [f32; 3]) -> [f32; 3] {
     let square = v.dot(&v);
     // Only a long vector has another one within reach.
     if square > (TAU - KEEP) * (TAU - KEEP) {
@@ -164,9 +167,9 @@ fn arc(sin: f32, cos: f32) -> Option<f32> {
     }
 }
 
-/// The turn about the first axis that is nearest to `q`, -pi..pi.
-fn twist([w, x, ..]: &[f32; 4]) -> Option<f32> {
-    arc(if *w < 0.0 { -*x } else { *x }, w.abs()).map(|half| 2.0 * half)
+/// The turn about an axis that is nearest to a rotation, -pi..pi: `w` and the part along the axis of its quaternion.
+fn twist(w: f32, x: f32) -> Option<f32> {
+    arc(if w < 0.0 { -x } else { x }, w.abs()).map(|half| 2.0 * half)
 }
 
 /// Angles of the turns about the first, second and third axis, `q = X Y Z`; the second within a quarter turn.

@@ -2,9 +2,9 @@
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-use super::joint::{Axes, JointKind};
+use super::joint::{Axes, JointKind, ball};
+use super::rotation::{exp, log, renormalised};
 use crate::model::{LoadError, Pack};
-use crate::pose::unit;
 
 /// Which coordinates every joint has. All slices have one entry per joint, parents first.
 #[derive(Clone, Copy, Debug)]
@@ -18,18 +18,15 @@ pub struct Rig<'a> {
     rows: usize,
 }
 
-/// One joint, and where its coordinates are.
-pub(crate) struct Joint {
+/// One joint, and where its coordinates are. It borrows: a copy of its tables would cost more than reading them.
+pub(crate) struct Joint<'a> {
     /// Which coordinates it has.
-    pub kind: JointKind,
+    kind: JointKind,
     /// Index of the first one.
-    pub first: usize,
-    /// The axes of a hinge or a chain.
-    pub axes: Axes,
-    /// Its local rotation at coordinates 0.
-    pub reference: UnitQuaternion<f32>,
-    /// Middle of the range of each angle.
-    pub middle: [f32; 3],
+    first: usize,
+    axes: &'a [[f32; 3]; 3],
+    reference: &'a [f32; 4],
+    middle: &'a [f32; 3],
 }
 
 impl<'a> Rig<'a> {
@@ -132,50 +129,62 @@ impl<'a> Rig<'a> {
         }
     }
 
-    pub(crate) fn iter(&self) -> impl Iterator<Item = Joint> + use<'a> {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = Joint<'a>> + use<'a> {
         let tables = self.axes.iter().zip(self.reference).zip(self.middle);
-        self.places().zip(tables).map(|((kind, first), ((axes, [i, j, k, w]), middle))| Joint {
+        self.places().zip(tables).map(|((kind, first), ((axes, reference), middle))| Joint {
             kind,
             first,
-            axes: Axes::new(axes),
-            reference: UnitQuaternion::new_unchecked(Quaternion::new(*w, *i, *j, *k)),
-            middle: *middle,
+            axes,
+            reference,
+            middle,
         })
     }
 }
 
-impl Joint {
+impl Joint<'_> {
+    /// Its local rotation at coordinates 0.
+    pub fn reference(&self) -> UnitQuaternion<f32> {
+        let [i, j, k, w] = *self.reference;
+        UnitQuaternion::new_unchecked(Quaternion::new(w, i, j, k))
+    }
+
     /// The local rotation with these coordinates.
     pub fn rotation(&self, coordinates: [f32; 3]) -> UnitQuaternion<f32> {
-        match self.kind {
-            JointKind::Fixed | JointKind::Slider => self.reference,
-            kind => unit((self.reference * self.axes.compose(kind, coordinates)).into_inner()),
-        }
+        let turn = match self.kind {
+            JointKind::Fixed | JointKind::Slider => return self.reference(),
+            JointKind::Ball => exp(Vector3::from(coordinates)),
+            kind => Axes::new(self.axes).compose(kind, coordinates),
+        };
+        renormalised((self.reference() * turn).into_inner())
     }
 
     /// The coordinates of a local rotation: see [`Axes::coordinates`].
     pub fn coordinates(&self, local: &UnitQuaternion<f32>, last: [f32; 3]) -> [f32; 3] {
+        let from = || renormalised((self.reference().inverse() * local).into_inner());
         match self.kind {
             JointKind::Fixed | JointKind::Slider => last,
-            kind => {
-                let from = unit((self.reference.inverse() * local).into_inner());
-                self.axes.coordinates(kind, &from, last, self.middle)
-            }
+            JointKind::Ball => ball(log(&from()), last),
+            kind => Axes::new(self.axes).coordinates(kind, &from(), last, *self.middle),
         }
     }
 
     /// Its coordinates in a frame; 0 past the ones that it has.
     pub fn read(&self, coordinates: &[f32]) -> [f32; 3] {
-        let mut own = [0.0; 3];
-        let there = coordinates.get(self.first..).unwrap_or(&[]);
-        own.iter_mut().zip(there).take(self.kind.coordinates()).for_each(|(own, there)| *own = *there);
-        own
+        // By number: a copy of a length that is not known is a call.
+        match (self.kind.coordinates(), coordinates.get(self.first..).unwrap_or(&[])) {
+            (3, [a, b, c, ..]) => [*a, *b, *c],
+            (1, [a, ..]) => [*a, 0.0, 0.0],
+            _ => [0.0; 3],
+        }
     }
 
     /// Puts its coordinates into a frame.
     pub fn write(&self, own: [f32; 3], coordinates: &mut [f32]) {
-        let there = coordinates.get_mut(self.first..).unwrap_or(&mut []);
-        there.iter_mut().zip(own).take(self.kind.coordinates()).for_each(|(there, own)| *there = own);
+        match (self.kind.coordinates(), coordinates.get_mut(self.first..).unwrap_or(&mut [])) {
+            (3, [a, b, c, ..]) => [*a, *b, *c] = own,
+            (1, [a, ..]) => [*a, ..] = own,
+            _ => {}
+        }
     }
 }
 
