@@ -47,7 +47,7 @@ pub(super) fn within(x: f32, lower: f32, upper: f32) -> f32 {
 impl Coordinate {
     /// One frame towards `target`, which lies within the bounds. Cost: about 15 multiply-adds; a root and two divisions more where it
     /// has to catch up, and as many where it has to brake.
-    #[inline]
+    #[inline(always)]
     pub fn advance(self, target: f32, bounds: &Bounds) -> Self {
         let Bounds { lower, upper, speed, change } = *bounds;
         let error = target - self.at;

@@ -16,8 +16,8 @@ pub trait Composition<const ROWS: usize> {
     type State: Default + 'static;
     /// The engines, borrowed from a pack.
     type Engine<'p>: Engine<ROWS, State = Self::State> + FromPack<'p>;
-    /// Sets the controls at power-on.
-    fn set(_: &mut Self::State) {}
+    /// Sets the controls at power-on, and does what would otherwise be the first frame's.
+    fn set(_: &Self::Engine<'_>, _: &mut Self::State) {}
 }
 
 /// A composition on poses of `JOINTS` joints.
@@ -42,9 +42,9 @@ impl<C: Composition<ROWS>, const JOINTS: usize, const ROWS: usize> Workload for 
         Pipeline::load(&pack).map_err(|_| Refused)
     }
 
-    fn power_on(_: &Self::Model<'_>) -> Self::State {
+    fn power_on(model: &Self::Model<'_>) -> Self::State {
         let mut running = Running { state: PipelineState::new(), source: Pose::identity(), out: Pose::identity() };
-        C::set(&mut running.state.engine);
+        C::set(&model.engine, &mut running.state.engine);
         running
     }
 
@@ -124,9 +124,10 @@ impl<const ROWS: usize> Composition<ROWS> for Everything {
     type State = <All<'static, ROWS> as Engine<ROWS>>::State;
     type Engine<'p> = All<'p, ROWS>;
 
-    fn set((mix, _): &mut Self::State) {
-        let (expression, ..) = &mut mix.engines;
+    fn set((Mix((.., emotion)), _): &Self::Engine<'_>, (mix, _): &mut Self::State) {
+        let (expression, .., moods) = &mut mix.engines;
         expression.modulation.amount = 0.5;
+        emotion.change(moods);
     }
 }
 
