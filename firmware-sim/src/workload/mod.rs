@@ -117,6 +117,7 @@ const ALL: &[(&str, Make)] = &[
     ("emotion-play", emotion::play),
     ("styled", styled::float),
     ("styled-i16", styled::fixed),
+    ("styled-by-hand", styled::by_hand),
     ("servos", servos::float),
     ("servos-i16", servos::fixed),
     ("pipeline", pipeline::float),

@@ -6,6 +6,7 @@ use kinesic_host::gait::{Manner, walk};
 use kinesic_host::limit::LimitsModel;
 use kinesic_host::pack::Provenance;
 use kinesic_host::rig::Rig;
+use kinesic_workloads::by_hand::ByHand;
 use kinesic_workloads::posed::{GAIT_JOINTS, Styled, StyledFixed};
 
 use super::translator::{self, numbers};
@@ -17,6 +18,12 @@ const SEED: u64 = 3;
 pub fn float(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
     let (pack, frames) = made(name, frames, false)?;
     on_host::<Styled>(name, "styled.kin", pack, &frames)
+}
+
+/// The same engines without `Pipeline`. It has no budget: a test compares it with `styled`.
+pub fn by_hand(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
+    let (pack, frames) = made(name, frames, false)?;
+    on_host::<ByHand>(name, "styled.kin", pack, &frames)
 }
 
 /// The translator in fixed point.

@@ -1,4 +1,5 @@
 //! Builds and runs an image of `firmware-sim/image` that is no workload.
+#![allow(dead_code, reason = "each test file uses a part")]
 
 use std::path::PathBuf;
 
@@ -7,6 +8,7 @@ use kinesic_firmware_sim::data::{Data, Target};
 use kinesic_firmware_sim::elf::Image;
 use kinesic_firmware_sim::emulator::{self, Run, RunError};
 use kinesic_firmware_sim::toolchain;
+use kinesic_firmware_sim::workload::Prepared;
 use kinesic_workloads::Frames;
 
 pub struct Bench {
@@ -21,6 +23,11 @@ impl Bench {
         build::write(&folders.packs().join("empty.bin"), &[]).unwrap();
         let plugin = build::plugin(&folders).unwrap();
         Self { data: Data::read(None).unwrap(), folders, plugin }
+    }
+
+    /// Puts the pack of a workload where its image includes it from.
+    pub fn pack(&self, prepared: &Prepared) {
+        build::write(&self.folders.packs().join(prepared.pack_name), &prepared.pack).unwrap();
     }
 
     pub fn target(&self, name: &str) -> &Target {

@@ -5,6 +5,7 @@
 #![no_std]
 
 pub mod arithmetic;
+pub mod by_hand;
 mod digest;
 pub mod emotion;
 pub mod face;

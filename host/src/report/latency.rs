@@ -31,30 +31,30 @@ const TRANSLATOR: [Workload; 2] = [
     Workload {
         name: "translator",
         size: "a model a joint, 25 joints, 8225 multiply-adds",
-        microseconds: [12_356, 8_331, 465, 531, 422, 142],
+        microseconds: [9_564, 6_388, 454, 518, 421, 134],
     },
     Workload {
         name: "translator-body",
         size: "whole body, 25 joints, 4825 multiply-adds",
-        microseconds: [9_521, 6_475, 309, 355, 278, 106],
+        microseconds: [6_973, 4_683, 289, 332, 266, 96],
     },
 ];
 const MECHANICS: [Workload; 2] = [
     Workload {
         name: "mechanics",
         size: "f32, 31 joints, 13992 multiply-adds",
-        microseconds: [19_266, 12_898, 568, 640, 499, 202],
+        microseconds: [19_245, 12_888, 566, 638, 498, 202],
     },
     Workload {
         name: "mechanics-i8",
         size: "the same after kinesic quantize",
-        microseconds: [5_811, 3_546, 452, 519, 412, 167],
+        microseconds: [5_788, 3_535, 450, 517, 411, 167],
     },
 ];
 const COMPONENTS: [Workload; 1] = [Workload {
     name: "components",
     size: "23 joints, 4140 multiply-adds",
-    microseconds: [8_724, 5_898, 269, 308, 242, 94],
+    microseconds: [6_250, 4_198, 256, 291, 235, 85],
 }];
 const FACE: [Workload; 1] =
     [Workload { name: "face", size: "12 clusters, 10 hidden units", microseconds: [3_015, 2_085, 132, 152, 121, 44] }];
@@ -62,11 +62,11 @@ const EMOTION: [Workload; 2] = [
     Workload {
         name: "emotion-play",
         size: "a frame, 19 joints, 13 keyframes",
-        microseconds: [4_543, 2_993, 186, 214, 179, 68],
+        microseconds: [464, 302, 41, 48, 41, 12],
     },
     Workload {
         name: "emotion-change",
         size: "a change of strength, 40 components",
-        microseconds: [73_704, 50_036, 2_241, 2_576, 1_965, 747],
+        microseconds: [58_726, 39_920, 2_329, 2_701, 2_303, 771],
     },
 ];
