@@ -2,7 +2,6 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::model::Joint;
 use super::{Frame, Rig};
 use crate::pose::{Heading, Pose, unit};
 
@@ -71,11 +70,7 @@ impl Rig<'_> {
     ) {
         *pose = *from;
         self.root(source, styled, drift, pose);
-        let turned = source.heading != styled.heading;
-        self.turn(styled, pose, |joint, first| {
-            let changed = joint.read(source.coordinates()) != joint.read(styled.coordinates());
-            changed || (first && turned)
-        });
+        self.turn(Some(source), styled, pose);
     }
 
     /// The pose of `styled`, every joint of the rig: one without coordinates is at its reference. Joints of the pose that the rig does not
@@ -88,7 +83,7 @@ impl Rig<'_> {
         pose: &mut Pose<JOINTS>,
     ) {
         self.root(source, styled, drift, pose);
-        self.turn(styled, pose, |_, _| true);
+        self.turn(None, styled, pose);
     }
 
     /// The pose at coordinates 0, at the origin.
@@ -98,23 +93,30 @@ impl Rig<'_> {
         pose
     }
 
-    /// Rotations of the joints that `which` names; of joint 0 it hears that it is the first.
+    /// Rotations of the joints whose coordinates are not those of `unchanged`. One function for both ways: half the code.
+    #[inline(never)]
     fn turn<const JOINTS: usize, const ROWS: usize>(
         &self,
+        unchanged: Option<&Frame<ROWS>>,
         styled: &Frame<ROWS>,
         pose: &mut Pose<JOINTS>,
-        which: impl Fn(&Joint, bool) -> bool,
     ) {
-        for (index, (joint, rotation)) in self.iter().zip(&mut pose.rotations).enumerate() {
-            let upright = index == 0 && self.travels();
-            if which(&joint, upright) {
-                let local = joint.rotation(joint.read(styled.coordinates()));
+        let mut upright = self.travels();
+        for (joint, rotation) in self.iter().zip(&mut pose.rotations) {
+            let own = joint.read(styled.coordinates());
+            let same = |frame: &Frame<ROWS>| {
+                joint.read(frame.coordinates()) == own && !(upright && frame.heading != styled.heading)
+            };
+            if !unchanged.is_some_and(same) {
+                let local = joint.rotation(own);
                 *rotation = if upright { unit((styled.heading.rotation() * local).into_inner()) } else { local };
             }
+            upright = false;
         }
     }
 
     /// Root and drift of a body that travels.
+    #[inline(never)]
     fn root<const JOINTS: usize, const ROWS: usize>(
         &self,
         source: &Frame<ROWS>,
