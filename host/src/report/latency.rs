@@ -30,13 +30,13 @@ pub fn workloads(engine: &str) -> &'static [Workload] {
 const TRANSLATOR: [Workload; 2] = [
     Workload {
         name: "translator",
-        size: "a model a joint, 25 joints, 8225 multiply-adds",
-        microseconds: [9_564, 6_388, 454, 518, 421, 134],
+        size: "a model a joint, 25 joints, 8554 multiply-adds",
+        microseconds: [9_535, 6_382, 435, 498, 400, 129],
     },
     Workload {
         name: "translator-body",
-        size: "whole body, 25 joints, 4825 multiply-adds",
-        microseconds: [6_973, 4_683, 289, 332, 266, 96],
+        size: "whole body, 25 joints, 5002 multiply-adds",
+        microseconds: [6_942, 4_678, 268, 308, 243, 91],
     },
 ];
 const MECHANICS: [Workload; 2] = [
@@ -53,8 +53,8 @@ const MECHANICS: [Workload; 2] = [
 ];
 const COMPONENTS: [Workload; 1] = [Workload {
     name: "components",
-    size: "23 joints, 4140 multiply-adds",
-    microseconds: [6_250, 4_198, 256, 291, 235, 85],
+    size: "23 joints, 4320 multiply-adds",
+    microseconds: [6_231, 4_198, 235, 270, 215, 81],
 }];
 const FACE: [Workload; 1] =
     [Workload { name: "face", size: "12 clusters, 10 hidden units", microseconds: [3_015, 2_085, 132, 152, 121, 44] }];
