@@ -14,11 +14,12 @@ use std::error::Error;
 
 use classifier::{Classifier, features};
 use clips::{ACTIONS, Clips, FRAME_RATE, Poses, STYLES, Take};
+use kinesic::Pose;
 use kinesic_host::measure::turns::Turns;
 use kinesic_host::pack::{PackFile, Provenance};
-use kinesic_host::rig::Rig;
+use kinesic_host::rig::{MAX_JOINTS, Rig};
 use kinesic_host::translate::{Alignment, NamedPair, Settings, TrainOptions, TrainPair, evaluate, play, train};
-use tally::{Shown, Tally};
+use tally::{SEEN, Shown, Tally};
 
 type Fallible<T> = Result<T, Box<dyn Error>>;
 
@@ -38,7 +39,7 @@ fn main() -> Fallible<()> {
     let clips = Clips::read()?;
     let mut tally = Tally::default();
     for [teach, judge] in FOLDS {
-        let judges = Judges::new(&clips, &teach)?;
+        let (judges, strangers) = (Judges::new(&clips, &teach)?, Judges::new(&clips, &judge)?);
         for style in 0..STYLES.len() {
             for action in 0..ACTIONS.len() {
                 for take in judge {
@@ -46,7 +47,7 @@ fn main() -> Fallible<()> {
                     tally.count(Shown::Real, style, judges.styles(&clips.rig, real));
                 }
                 if style > 0 {
-                    one(&clips, &judges, &options, [action, style], [teach, judge], &mut tally)?;
+                    one(&clips, [&judges, &strangers], &options, [action, style], [teach, judge], &mut tally)?;
                 }
             }
         }
@@ -58,7 +59,7 @@ fn main() -> Fallible<()> {
 /// Trains one style of one action, and counts what the classifiers see when it plays.
 fn one(
     clips: &Clips,
-    judges: &Judges,
+    [judges, strangers]: [&Judges; 2],
     options: &TrainOptions,
     [action, style]: [usize; 2],
     [teach, judge]: [[usize; 2]; 2],
@@ -76,11 +77,14 @@ fn one(
     let trained = train(rig, &pairs, STYLES[style], FRAME_RATE, options, &|_| {})?;
     let file = PackFile::from_bytes(&trained.model.pack(rig, &Provenance::default()));
     let pack = file.pack()?;
-    for [source, _] in judge {
-        let mut show = |shown, poses: &Poses| tally.count(shown, style, judges.styles(&clips.rig, poses));
+    for [source, target] in judge {
+        let mut show = |shown, poses: &[Pose<MAX_JOINTS>]| tally.count(shown, style, judges.styles(&clips.rig, poses));
         show(Shown::Source, &source.poses);
         show(Shown::Offset, &offset(rig, teach, source));
-        show(Shown::Output, &play(&pack, rig, &source.poses, &Settings::default())?);
+        let output = play(&pack, rig, &source.poses, &Settings::default())?;
+        show(Shown::Output, &output);
+        tally.spread(style, [target.poses.as_slice(), &output].map(|poses| seen(&clips.rig, poses)[1].clone()));
+        tally.count(Shown::ToStrangers, style, strangers.styles(&clips.rig, &output));
     }
     let turns = Turns::of_pairs(rig, teach.iter().map(|[source, target]| (&source.clip, &target.clip)))?;
     let named = judge.map(|pair| {
@@ -89,9 +93,6 @@ fn one(
     });
     let report = evaluate(&pack, rig, &trained.baselines, Some(&turns), &named)?;
     tally.angles.extend(report.pairs.into_iter().map(|pair| pair.errors));
-    if std::env::var_os("RECOGNITION_LOG").is_some() {
-        eprintln!("{} {}: {:?} {:?}", ACTIONS[action], STYLES[style], trained.alignment, trained.candidate);
-    }
     Ok(())
 }
 
@@ -108,12 +109,12 @@ fn offset(rig: &Rig, teach: [[&Take; 2]; 2], source: &Take) -> Poses {
     })
 }
 
-/// One classifier of rotations, one of positions.
-struct Judges([Classifier; 2]);
+/// A classifier for each kind of features.
+struct Judges([Classifier; SEEN]);
 
 impl Judges {
     fn new(clips: &Clips, takes: &[usize]) -> Fallible<Self> {
-        let mut samples = [const { Vec::new() }; 2];
+        let mut samples = [const { Vec::new() }; SEEN];
         for action in 0..ACTIONS.len() {
             for style in 0..STYLES.len() {
                 for take in takes {
@@ -123,18 +124,22 @@ impl Judges {
             }
         }
         let fit = |samples: &[_]| Classifier::fit(samples, STYLES.len()).ok_or("the classifier is undetermined");
-        Ok(Self([fit(&samples[0])?, fit(&samples[1])?]))
+        let [both, deviations, positions] = samples.each_ref().map(|samples| fit(samples));
+        Ok(Self([both?, deviations?, positions?]))
     }
 
-    fn styles(&self, rig: &Rig, poses: &Poses) -> [usize; 2] {
-        let [rotations, positions] = seen(rig, poses);
-        [self.0[0].class(&rotations), self.0[1].class(&positions)]
+    fn styles(&self, rig: &Rig, poses: &[Pose<MAX_JOINTS>]) -> [usize; SEEN] {
+        let seen = seen(rig, poses);
+        std::array::from_fn(|kind| self.0[kind].class(&seen[kind]))
     }
 }
 
-/// Features: of rotation vectors, the root's against its heading; of heading-local positions.
-fn seen(rig: &Rig, poses: &Poses) -> [Vec<f64>; 2] {
+/// Features, as [`tally::KINDS`] names them. The root is turned against its heading, and positions are heading-local.
+fn seen(rig: &Rig, poses: &[Pose<MAX_JOINTS>]) -> [Vec<f64>; SEEN] {
     let locals = rig.locals(poses);
     // The first row is travel and height.
-    [features(&locals.coordinates, 3 * locals.rows, 3), features(&locals.positions, locals.channels, 0)]
+    let rotations = features(&locals.coordinates, 3 * locals.rows, 3);
+    // Means come before deviations.
+    let deviations = rotations[rotations.len() / 2..].to_vec();
+    [rotations, deviations, features(&locals.positions, locals.channels, 0)]
 }

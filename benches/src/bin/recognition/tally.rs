@@ -7,7 +7,16 @@ use super::clips::STYLES;
 
 const COUNT: usize = STYLES.len();
 /// What is shown to the classifiers.
-const NAMES: [&str; 4] = ["real clips, held out", "source, unchanged", "source + mean offset", "output of the pack"];
+const NAMES: [&str; 5] = [
+    "real clips, held out",
+    "source, unchanged",
+    "source + mean offset",
+    "output of the pack",
+    "the same, by a classifier that saw the other takes",
+];
+/// What it is judged by.
+pub const KINDS: [&str; 3] = ["rotations", "the deviations of rotations alone", "positions"];
+pub const SEEN: usize = KINDS.len();
 const JOINTS: [&str; 3] = ["Head", "Hand_L", "Hand_R"];
 
 /// What is shown to the classifiers.
@@ -17,22 +26,32 @@ pub enum Shown {
     Source,
     Offset,
     Output,
+    /// To a classifier that saw the takes that judge, none that the pack has seen.
+    ToStrangers,
 }
 
 #[derive(Default)]
 pub struct Tally {
-    /// By rotations and by positions; of what was shown; of the wanted style; called so.
-    called: [[[[usize; COUNT]; COUNT]; NAMES.len()]; 2],
+    /// By kind of features; of what was shown; of the wanted style; called so.
+    called: [[[[usize; COUNT]; COUNT]; NAMES.len()]; SEEN],
     pub angles: Vec<Errors>,
+    /// Sums of squared deviations of rotations by style: of targets, of outputs.
+    spread: [[f64; 2]; COUNT],
 }
 
 impl Tally {
-    pub fn count(&mut self, shown: Shown, wanted: usize, said: [usize; 2]) {
+    pub fn count(&mut self, shown: Shown, wanted: usize, said: [usize; SEEN]) {
         self.called.iter_mut().zip(said).for_each(|(called, said)| called[shown as usize][wanted][said] += 1);
     }
 
+    /// Deviations of the rotations of a target and of an output.
+    pub fn spread(&mut self, style: usize, deviations: [Vec<f64>; 2]) {
+        let squares = |deviations: &Vec<f64>| deviations.iter().map(|x| x * x).sum::<f64>();
+        self.spread[style].iter_mut().zip(&deviations).for_each(|(sum, deviations)| *sum += squares(deviations));
+    }
+
     pub fn print(&self) {
-        for (called, by) in self.called.iter().zip(["rotations", "positions"]) {
+        for (called, by) in self.called.iter().zip(KINDS) {
             println!("\nRecognised as the wanted style by {by}, %\n");
             println!("| shown | clips | {} | **all** |", STYLES.join(" | "));
             println!("|---|---|{}---|", "---|".repeat(COUNT));
@@ -47,11 +66,11 @@ impl Tally {
                 }
                 println!(" **{:.1}** |", share(right, clips));
             }
-            println!("\nOutputs (row: wanted style, column: style that {by} are taken for)\n");
-            for (row, style) in called[Shown::Output as usize].iter().zip(STYLES) {
-                println!("{style:10} {row:?}");
-            }
         }
+        println!("\nRMS deviation of the rotations of the outputs, % of that of their targets\n");
+        println!("| {} |\n|{}", STYLES[1..].join(" | "), "---|".repeat(COUNT - 1));
+        let share = |[target, output]: &[f64; 2]| format!(" {:.0} |", 100.0 * (output / target).sqrt());
+        println!("|{}", self.spread[1..].iter().map(share).collect::<String>());
         self.print_angles();
     }
 
@@ -61,19 +80,18 @@ impl Tally {
         let of = |pick: fn(&Angles) -> Option<&Degrees>| {
             Degrees::mean(self.angles.iter().filter_map(|errors| pick(&errors.degrees)).collect::<Vec<_>>().into_iter())
         };
-        let columns = [of(|a| Some(&a.identity)), of(|a| a.offset.as_ref()), of(|a| a.affine.as_ref()), of(|a| Some(&a.error))];
+        let columns =
+            [of(|a| Some(&a.identity)), of(|a| a.offset.as_ref()), of(|a| a.affine.as_ref()), of(|a| Some(&a.error))];
         let row = |name: &str, of: &dyn Fn(&Degrees) -> f64| {
             let [source, offset, affine, output] = columns.each_ref().map(of);
             println!("| {name} | {source:.1} | {offset:.1} | {affine:.1} | **{output:.1}** |");
         };
         for name in JOINTS {
-            let angle = |d: &Degrees| d.joints.iter().find(|joint| joint.joint == name).map_or(f64::NAN, |joint| joint.angle);
+            let angle =
+                |d: &Degrees| d.joints.iter().find(|joint| joint.joint == name).map_or(f64::NAN, |joint| joint.angle);
             row(name, &angle);
         }
         row("leaves: head, hands, toes", &|d| d.leaves);
         row("all joints", &|d| d.all);
-        let mean = |of: fn(&Errors) -> f64| self.angles.iter().map(of).sum::<f64>() / self.angles.len() as f64;
-        let cm = [mean(|e| e.identity_cm), mean(|e| e.offset_cm), mean(|e| e.affine_cm), mean(|e| e.error_cm)];
-        println!("\nRMS joint distance, cm: {:.2} {:.2} {:.2} {:.2}", cm[0], cm[1], cm[2], cm[3]);
     }
 }
