@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Prints the tables of docs/quality.md. About four minutes on two cores. Needs the real clips (KINESIC_DATA).
-# usage: docs/quality.sh [xia|swap|child|people]...   (default: all)
+# Prints the tables of docs/quality.md. About six minutes on two cores. Needs the real clips (KINESIC_DATA).
+# usage: docs/quality.sh [xia|swap|child|people|recognition]...   (default: all)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 data=$(realpath "${KINESIC_DATA:-../shared/data}")
@@ -139,13 +139,14 @@ people_table() {
         END { printf "| **mean** | %.2f | %.2f | %.2f | %.2f | |\n", sum[1], sum[2], sum[3], sum[4] }' "$work/all"
 }
 
-for part in "${@:-xia swap child people}"; do
+for part in "${@:-xia swap child people recognition}"; do
     for table in $part; do
         case $table in
         xia) xia 000 001 ;;
         swap) xia 001 000 ;;
         child) child_table ;;
         people) people_table ;;
+        recognition) KINESIC_DATA=$data cargo run --release --locked -q -p kinesic-benches --bin recognition ;;
         *) echo "no table $table" >&2; exit 2 ;;
         esac
     done

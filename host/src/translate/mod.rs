@@ -30,7 +30,7 @@ mod train;
 pub use candidate::{AFFINE, Candidate};
 pub use correspond::Alignment;
 pub use dynamics::{Dynamics, Poles};
-pub use evaluate::{Errors, EvaluateError, NamedPair, PairReport, Report, evaluate};
+pub use evaluate::{Angles, Errors, EvaluateError, NamedPair, PairReport, Report, evaluate};
 pub use model::{BankModel, TimingModel, TranslatorModel};
 pub use moments::Base;
 pub use play::{HostTranslator, Settings, TIMING_STRENGTH, Timing, play};
