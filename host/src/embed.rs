@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use kinesic::model::{LoadError, ModelMeta};
 
-use crate::mechanics::HostMechanics;
+use crate::engines::{Source, known};
 use crate::pack::PackFile;
 
 /// Bytes on a line of the source.
@@ -29,12 +29,9 @@ pub fn rust_module(file: &PackFile, origin: &str) -> Result<String, LoadError> {
             models.push(meta);
         }
     }
-    let has_mechanics = models.iter().any(|meta| meta.mechanics().is_some());
-    let face_units = if has_mechanics { "FACE_UNITS" } else { "UNITS" };
-    for meta in &models {
+    let sources = models.iter().map(|meta| known(meta).source(&pack)).collect::<Result<Vec<_>, _>>()?;
+    for Source { model, state, .. } in &sources {
         out.push_str("//!\n//! ```text\n");
-        let (model, state) = engine(meta);
-        let model = if meta.face().is_some() { model.replace("UNITS", face_units) } else { model.to_owned() };
         let _ = writeln!(
             out,
             "//! let pack = kinesic::Pack::load(PACK)?;\n//! let model = kinesic::{model}::load(&pack)?;"
@@ -52,36 +49,8 @@ pub fn rust_module(file: &PackFile, origin: &str) -> Result<String, LoadError> {
         &format!("{:?}", metadata.frame_rate),
         "f32",
     );
-    for meta in models {
-        match meta {
-            ModelMeta::Translator(meta) => {
-                constant("Filter states of the translator", "STATES", &(2 * meta.blocks + meta.drives), "usize");
-            }
-            ModelMeta::Mechanics(meta) => {
-                let units = meta.hidden.next_multiple_of(4) + meta.code.next_multiple_of(4);
-                constant("Units of the hidden layer and the code of body mechanics", "UNITS", &units, "usize");
-                constant(
-                    "Frames of memory of body mechanics",
-                    "WINDOW",
-                    &HostMechanics::load(&pack)?.features().window(),
-                    "usize",
-                );
-            }
-            ModelMeta::Components(meta) => {
-                constant("Style components", "COMPONENTS", &meta.count, "usize");
-            }
-            ModelMeta::Emotion(meta) => {
-                constant("Keyframes of the motion", "KEYS", &meta.keyframes, "usize");
-                let inputs = meta.hidden + meta.attributes.iter().flatten().count() as u32;
-                let width = meta.components.max(inputs);
-                constant("Components of a keyframe, or inputs of the output layer", "WIDTH", &width, "usize");
-            }
-            ModelMeta::Face(meta) => {
-                constant("Hidden units of a cluster of head pose", face_units, &meta.hidden, "usize");
-            }
-            // As many rows as a frame.
-            ModelMeta::Limits(_) => {}
-        }
+    for (doc, name, value) in sources.iter().flat_map(|source| &source.constants) {
+        constant(doc, name, value, "usize");
     }
     let _ = write!(
         out,
@@ -103,16 +72,4 @@ pub fn rust_module(file: &PackFile, origin: &str) -> Result<String, LoadError> {
     }
     out.push_str("\");\n");
     Ok(out)
-}
-
-/// The types of an engine with the module's constants as capacities.
-fn engine(meta: &ModelMeta) -> (&'static str, &'static str) {
-    match meta {
-        ModelMeta::Translator(_) => ("Translator::<ROWS, STATES>", "TranslatorState"),
-        ModelMeta::Mechanics(_) => ("BodyMechanics::<JOINTS, UNITS, WINDOW>", "MechanicsState"),
-        ModelMeta::Components(_) => ("Components::<ROWS, COMPONENTS>", "ComponentsState"),
-        ModelMeta::Emotion(_) => ("Emotion::<ROWS, KEYS, WIDTH>", "EmotionState"),
-        ModelMeta::Face(_) => ("FaceSynth::<UNITS>", "FaceState"),
-        ModelMeta::Limits(_) => ("Limiter::<ROWS>", "LimitState"),
-    }
 }

@@ -10,6 +10,7 @@ pub mod clip;
 pub mod components;
 pub mod embed;
 pub mod emotion;
+pub mod engines;
 pub mod face;
 pub mod files;
 pub mod gait;

@@ -177,3 +177,26 @@ fn aligned(pack: &[u8]) -> Vec<u128> {
     bytemuck::cast_slice_mut(&mut words)[..pack.len()].copy_from_slice(pack);
     words
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use crate::data::{Data, home};
+
+    /// Images that are no workloads of the check: the tool's own, and clips of the reader's.
+    const OTHER: [&str; 3] = ["calibrate", "control-", "recorded"];
+
+    #[test]
+    fn every_image_is_a_workload_with_a_budget() {
+        let known: BTreeSet<String> = super::ALL.iter().map(|(name, _)| (*name).to_owned()).collect();
+        let budgets = Data::read(None).unwrap().budgets;
+        assert_eq!(known, budgets.workloads.into_keys().collect(), "workload/mod.rs and [workloads] of budgets.toml");
+        assert_eq!(known, budgets.limits.into_keys().collect(), "workload/mod.rs and [limits] of budgets.toml");
+        let files = std::fs::read_dir(home().join("image/src/bin")).unwrap();
+        let names = files.filter_map(|file| Some(file.unwrap().file_name().to_str()?.strip_suffix(".rs")?.to_owned()));
+        let images: BTreeSet<String> =
+            names.filter(|name| !OTHER.iter().any(|other| name.starts_with(other))).collect();
+        assert_eq!(known, images, "workload/mod.rs and image/src/bin");
+    }
+}

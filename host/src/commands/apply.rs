@@ -7,12 +7,12 @@ use kinesic::engine::Controls;
 use kinesic::model::ModelMeta;
 use kinesic::{Pack, Pose};
 use kinesic_host::clip::{Clip, Memory};
-use kinesic_host::components;
 use kinesic_host::pack::PackFile;
 use kinesic_host::prepare::Source;
 use kinesic_host::quality::{self, Quality};
 use kinesic_host::rig::{MAX_JOINTS, MAX_ROWS, Rig};
 use kinesic_host::translate::{self, TIMING_STRENGTH, Timing};
+use kinesic_host::{components, engines};
 use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
 
@@ -170,27 +170,28 @@ fn play(
     controls: Controls<MAX_ROWS>,
 ) -> miette::Result<Played> {
     let models: Vec<ModelMeta> = pack.metadata().models.iter().collect();
-    if let (Some(meta), Some(clip)) = (models.iter().find_map(|m| m.translator()), clip) {
-        let timing = match args.timing {
-            Clock::Keep => Timing::Keep,
-            Clock::Learned => Timing::Learned,
-        };
-        if let Timing::Learned = timing {
+    let learned = matches!(args.timing, Clock::Learned);
+    match (engines::player(pack, true), clip) {
+        (Some(("translator", player)), Some(clip)) if learned => {
             check_length(args, pack, clip)?;
+            let settings = translate::Settings { controls, timing: Timing::Learned };
+            let poses = translate::play(pack, rig, &rig.poses(clip), &settings).into_diagnostic()?;
+            return Ok(Played { poses, plausible: player.plausible });
         }
-        let poses = translate::play(pack, rig, &rig.poses(clip), &translate::Settings { controls, timing });
-        return Ok(Played { poses: poses.into_diagnostic()?, plausible: meta.strength });
+        (Some((engine, _)), Some(_)) if learned => {
+            return Err(miette!("--timing learned: the {engine} of this pack has no timing, only a translator has"));
+        }
+        (Some((_, player)), Some(clip)) => {
+            let poses = (player.play)(pack, rig, &rig.poses(clip), controls).into_diagnostic()?;
+            return Ok(Played { poses, plausible: player.plausible });
+        }
+        _ => {}
     }
-    if let Some(meta) = models.iter().find_map(|m| m.components()) {
-        if matches!(args.timing, Clock::Learned) {
-            return Err(miette!("--timing learned: a pack of style components has no timing, only a translator has"));
+    if let (Some(meta), None) = (models.iter().find_map(|m| m.components()), clip) {
+        if learned {
+            return Err(miette!("--timing learned: the stored motion has no timing, only a translator has"));
         }
-        let settings = components::Settings { controls };
-        let poses = match clip {
-            Some(clip) => components::play(pack, rig, &rig.poses(clip), &settings),
-            None => components::play_stored(pack, rig, &settings),
-        };
-        let poses = poses.into_diagnostic()?;
+        let poses = components::play_stored(pack, rig, &components::Settings { controls }).into_diagnostic()?;
         if poses.is_empty() {
             return Err(miette!(help = "name a clip to play", "the pack stores no motion"));
         }

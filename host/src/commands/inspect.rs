@@ -5,19 +5,13 @@ use std::path::{Path, PathBuf};
 use kinesic::Pack;
 use kinesic::model::{JointMeta, MAGIC, ModelMeta, VERSION};
 use kinesic_host::clip::{self, JointMap};
-use kinesic_host::components::HostComponents;
-use kinesic_host::emotion::HostEmotion;
-use kinesic_host::face::HostFace;
+use kinesic_host::engines::known;
 use kinesic_host::files;
-use kinesic_host::limit::{HostLimiter, LimitsModel};
-use kinesic_host::mechanics::HostMechanics;
 use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_host::plain::line;
 use kinesic_host::rig::Rig;
-use kinesic_host::translate::HostTranslator;
 use miette::IntoDiagnostic;
 use serde::Serialize;
-use serde_json::json;
 
 use super::clips::Reading;
 use super::output::print_json;
@@ -129,96 +123,10 @@ pub struct ModelReport {
 }
 
 fn model(pack: &Pack, meta: &ModelMeta, rows: usize) -> miette::Result<ModelReport> {
-    let (engine, figures) = match meta {
-        ModelMeta::Translator(meta) => {
-            let translator = HostTranslator::load(pack).into_diagnostic()?;
-            let states = (2 * meta.blocks + meta.drives) as usize;
-            let figures = json!({
-                "style": meta.style,
-                "form": format!("{:?}", meta.form),
-                "numbers": format!("{:?}", translator.number()).to_lowercase(),
-                "filter_states": 2 * meta.blocks,
-                "drives": meta.drives,
-                "multiply_adds_per_frame": translator.multiply_adds(),
-                "capacity": format!("Translator::<{rows}, {states}>"),
-                "state_bytes": translator_state_bytes(rows, states),
-                "plausible_strength": meta.strength,
-            });
-            ("translator", figures)
-        }
-        ModelMeta::Mechanics(meta) => {
-            let mechanics = HostMechanics::load(pack).into_diagnostic()?;
-            let figures = json!({
-                "hidden": meta.hidden,
-                "code": meta.code,
-                "body_height_m": centimetres(meta.body_height),
-                "weights": format!("{:?}", mechanics.precision()).to_lowercase(),
-                "hip_height_m": centimetres(meta.hip_height),
-                "multiply_adds_per_frame_before_kinematics": mechanics.multiply_adds(),
-            });
-            ("mechanics", figures)
-        }
-        ModelMeta::Components(meta) => {
-            let components = HostComponents::load(pack).into_diagnostic()?;
-            let figures = json!({
-                "style": meta.style,
-                "components": meta.count,
-                "stored_frames": meta.frames,
-                "multiply_adds_per_frame": components.multiply_adds(),
-                "capacity": format!("Components::<{rows}, {}>", meta.count),
-                "plausible_strength": meta.strength,
-            });
-            ("components", figures)
-        }
-        ModelMeta::Emotion(meta) => {
-            let emotion = HostEmotion::load(pack).into_diagnostic()?;
-            let width = meta.components.max(meta.hidden + emotion.attributes() as u32);
-            let strengths: serde_json::Map<String, serde_json::Value> =
-                meta.attributes.iter().flatten().map(|a| (a.name.to_owned(), json!(a.strength))).collect();
-            let figures = json!({
-                "motion": meta.motion,
-                "cycle": meta.cycle,
-                "keyframes": meta.keyframes,
-                "components": meta.components,
-                "hidden": meta.hidden,
-                "multiply_adds_per_change_of_strength": emotion.multiply_adds(),
-                "capacity": format!("Emotion::<{rows}, {}, {width}>", meta.keyframes),
-                "plausible_strengths": strengths,
-            });
-            ("emotion", figures)
-        }
-        ModelMeta::Face(meta) => {
-            let face = HostFace::load(pack).into_diagnostic()?;
-            let figures = json!({
-                "attribute": meta.attribute,
-                "clusters": meta.clusters,
-                "hidden": meta.hidden,
-                "multiply_adds_per_update_before_the_frame": face.multiply_adds(),
-                "capacity": format!("FaceSynth::<{}>", meta.hidden),
-                "state_bytes": size_of::<kinesic::FaceState>(),
-                "plausible_strength": meta.strength,
-            });
-            ("face", figures)
-        }
-        ModelMeta::Limits(meta) => {
-            let limiter = HostLimiter::load(pack).into_diagnostic()?;
-            let joints = LimitsModel::from_pack(pack).into_diagnostic()?.joints;
-            let figures = json!({
-                "limited_joints": joints.iter().filter(|joint| joint.count() > 0 && !joint.is_free()).count(),
-                "root_velocity_m_s": f64::from(meta.root_velocity),
-                "root_acceleration_m_s2": f64::from(meta.root_acceleration),
-                "heading_velocity_rad_s": f64::from(meta.heading_velocity),
-                "heading_acceleration_rad_s2": f64::from(meta.heading_acceleration),
-                "hold_s": f64::from(meta.hold),
-                "decay_s": f64::from(meta.decay),
-                "recovery_frames": limiter.recovery_frames(),
-                "capacity": format!("Limiter::<{rows}>"),
-            });
-            ("limits", figures)
-        }
-    };
-    let serde_json::Value::Object(figures) = figures else { unreachable!("json! of braces is an object") };
-    Ok(ModelReport { engine, figures })
+    let engine = known(meta);
+    let figures = engine.figures(pack, rows).into_diagnostic()?;
+    let serde_json::Value::Object(figures) = figures else { unreachable!("figures are an object") };
+    Ok(ModelReport { engine: engine.name(), figures })
 }
 
 /// What every model in a pack needs and does, by name.
@@ -285,26 +193,4 @@ fn pack(path: &Path, json: bool) -> miette::Result<()> {
         }
     }
     Ok(())
-}
-
-/// A length in m to the centimetre, as a double that prints so.
-fn centimetres(length: f32) -> f64 {
-    (100.0 * f64::from(length)).round() / 100.0
-}
-
-/// `size_of::<TranslatorState<JOINTS, STATES>>()`, whose parameters are known only now.
-fn translator_state_bytes(rows: usize, states: usize) -> usize {
-    // Filters, mask and strength.
-    4 * (states + 3 * rows + 1)
-}
-
-#[cfg(test)]
-mod tests {
-    use kinesic::TranslatorState;
-
-    #[test]
-    fn state_bytes_are_the_type_s() {
-        assert_eq!(super::translator_state_bytes(31, 48), size_of::<TranslatorState<31, 48>>());
-        assert_eq!(super::translator_state_bytes(25, 1000), size_of::<TranslatorState<25, 1000>>());
-    }
 }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use kinesic::model::ModelMeta;
 use kinesic_host::clip::JointMap;
+use kinesic_host::engines::known;
 use kinesic_host::gait::{Manner, walk};
 use kinesic_host::models;
 use kinesic_host::pack::PackFile;
@@ -84,7 +85,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     bar.set_message("reading");
     let (face_packs, packs) =
         read_packs(&packs)?.into_iter().partition::<Vec<_>, _>(|pack| holds(pack, |m| m.face().is_some()));
-    let plays_clips = |m: &ModelMeta| m.translator().is_some() || m.components().is_some() || m.mechanics().is_some();
+    let plays_clips = |m: &ModelMeta| known(m).player().is_some();
     let (emotions, packs) = packs
         .into_iter()
         .partition::<Vec<_>, _>(|pack| holds(pack, |m| m.emotion().is_some()) && !holds(pack, plays_clips));

@@ -3,18 +3,14 @@
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use kinesic::engine::Controls;
-use kinesic::mechanics::Modulation;
-use kinesic::model::ModelMeta;
 use kinesic::{LoadError, Pack, Pose};
 use serde::Serialize;
 
 use super::{ViewClip, ViewError, ViewPack};
 use crate::clip::{Canonical, JointMap, Skeleton};
-use crate::components;
-use crate::mechanics::{decouple, modulate};
+use crate::engines;
 use crate::prepare::Source;
 use crate::rig::{MAX_JOINTS, Rig};
-use crate::translate::{self, Timing};
 
 /// Frames of each clip whose output the page compares with the host's.
 pub const CHECKED: usize = 300;
@@ -85,45 +81,14 @@ pub(super) struct SceneData {
     digest: String,
 }
 
-/// The engine that plays a pack: the first of these that it holds, as in `wasm/src/engine.rs`.
-#[derive(Clone, Copy)]
-enum Engine {
-    Translator([f32; 2]),
-    Components([f32; 2]),
-    Mechanics,
-}
-
-impl Engine {
-    fn of(pack: &Pack) -> Option<Self> {
-        let models: Vec<ModelMeta> = pack.metadata().models.iter().collect();
-        let translator = models.iter().find_map(|m| m.translator()).map(|meta| Self::Translator(meta.strength));
-        let components = || models.iter().find_map(|m| m.components()).map(|meta| Self::Components(meta.strength));
-        let mechanics = || models.iter().find_map(|m| m.mechanics()).map(|_| Self::Mechanics);
-        translator.or_else(components).or_else(mechanics)
-    }
-
-    fn play(self, pack: &Pack, rig: &Rig, poses: &[HostPose], strength: f32) -> Result<Vec<HostPose>, LoadError> {
-        let controls = Controls { strength, ..Controls::default() };
-        match self {
-            Self::Translator(_) => {
-                translate::play(pack, rig, poses, &translate::Settings { controls, timing: Timing::Keep })
-            }
-            Self::Components(_) => components::play(pack, rig, poses, &components::Settings { controls }),
-            Self::Mechanics => {
-                let modulation = Modulation { amount: strength, ..Modulation::default() };
-                Ok(modulate(poses, &decouple(pack, poses)?, &modulation))
-            }
-        }
-    }
-}
-
 /// What plays one pack.
 pub(super) struct Player<'p> {
     name: &'p str,
     pack: Pack<'p>,
     bytes: &'p [u8],
     rig: Rig,
-    engine: Engine,
+    engine: &'static str,
+    player: engines::Player,
 }
 
 impl<'p> Player<'p> {
@@ -132,16 +97,12 @@ impl<'p> Player<'p> {
         let pack = of.file.pack().map_err(refuse)?;
         let rig = Rig::from_pack(&pack).map_err(|error| ViewError::Rig { name: of.name.clone(), error })?;
         let expected = "a translator, style components or body mechanics";
-        let engine = Engine::of(&pack).ok_or(LoadError::NoModel { expected }).map_err(refuse)?;
-        Ok(Self { name: &of.name, pack, bytes: of.file.bytes(), rig, engine })
+        let (engine, player) = engines::player(&pack, false).ok_or(LoadError::NoModel { expected }).map_err(refuse)?;
+        Ok(Self { name: &of.name, pack, bytes: of.file.bytes(), rig, engine, player })
     }
 
     pub fn data(&self) -> PackData {
-        let (engine, plausible) = match self.engine {
-            Engine::Translator(range) => ("translator", range),
-            Engine::Components(range) => ("components", range),
-            Engine::Mechanics => ("mechanics", [0.0, 2.0]),
-        };
+        let (engine, plausible) = (self.engine, self.player.plausible);
         PackData { body: BodyData::new(self.name, &self.pack, self.bytes, &self.rig), engine, plausible }
     }
 
@@ -153,7 +114,8 @@ impl<'p> Player<'p> {
         let source = poses(&clip.source)?;
         let target = clip.target.as_ref().map(poses).transpose()?;
         let checked = source.get(..CHECKED).unwrap_or(&source);
-        let played = self.engine.play(&self.pack, &self.rig, checked, STRENGTH);
+        let controls = Controls { strength: STRENGTH, ..Controls::default() };
+        let played = (self.player.play)(&self.pack, &self.rig, checked, controls);
         let played = played.map_err(|error| ViewError::Pack { name: self.name.to_owned(), error })?;
         let joints = self.rig.joints();
         let text = |poses: &[HostPose]| {

@@ -33,7 +33,7 @@ function slider({ id, label, min, max, step, value, change }) {
 // The controls of a pack.
 function panel(pack, index) {
   const state = kinesic.controls[index];
-  const { label, help } = CONTROLS[pack.engine];
+  const { label, help } = CONTROLS[pack.engine] ?? STRENGTH;
   const [low, high] = pack.plausible;
   const warning = element("span", { className: "warn small" });
   const changed = () => {

@@ -1,9 +1,8 @@
 // The core in WebAssembly: one instance a pack, and the motions that it makes.
 
-// What can be turned, an engine. Emotions and faces have files of their own.
+// What can be turned: a strength, unless the engine is here. Emotions and faces have files of their own.
+const STRENGTH = { label: "Strength", help: "0 = the source, 1 = as learned" };
 const CONTROLS = {
-  translator: { label: "Strength", help: "0 = the source, 1 = as learned" },
-  components: { label: "Strength", help: "0 = the source, 1 = as learned" },
   mechanics: { label: "Expressiveness", help: "0 = what the body must do, 1 = the source, 2 = twice the expression" },
 };
 
