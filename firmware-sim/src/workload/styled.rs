@@ -15,19 +15,20 @@ use crate::made::FRAME_RATE;
 
 const SEED: u64 = 3;
 
-pub fn float(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
+pub(super) fn float(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
     let (pack, frames) = made(name, frames, false)?;
     on_host::<Styled>(name, "styled.kin", pack, &frames)
 }
 
 /// The same engines without `Pipeline`. It has no budget: a test compares it with `styled`.
-pub fn by_hand(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
+pub fn by_hand(frames: usize) -> Result<Prepared, WorkloadError> {
+    let name = "by-hand";
     let (pack, frames) = made(name, frames, false)?;
     on_host::<ByHand>(name, "styled.kin", pack, &frames)
 }
 
 /// The translator in fixed point.
-pub fn fixed(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
+pub(super) fn fixed(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
     let (pack, frames) = made(name, frames, true)?;
     on_host::<StyledFixed>(name, "styled-i16.kin", pack, &frames)
 }
@@ -45,7 +46,12 @@ fn made(name: &str, frames: usize, fixed: bool) -> Result<(Vec<u8>, Vec<Vec<f32>
 }
 
 /// One pack of a translator and limits, on the rig of the limits.
-pub fn with_limits(name: &str, rig: &Rig, translator: &[u8], limits: &LimitsModel) -> Result<Vec<u8>, WorkloadError> {
+pub(super) fn with_limits(
+    name: &str,
+    rig: &Rig,
+    translator: &[u8],
+    limits: &LimitsModel,
+) -> Result<Vec<u8>, WorkloadError> {
     let refused = |_| WorkloadError::Refused { name: name.to_owned() };
     let words = aligned(translator);
     let part = Pack::load(&bytemuck::cast_slice(&words)[..translator.len()]).map_err(refused)?;
