@@ -2,17 +2,13 @@
 
 use core::mem::MaybeUninit;
 
-use kinesic::{Components, Limiter, Translator};
+use kinesic::engine::live::{self, Live};
 
 use crate::playing::{self, Playing, State};
 use crate::storage;
 use crate::{KINESIC_COMPONENTS, KINESIC_ROWS, KINESIC_STATES, KinesicPose, KinesicStatus};
 
-type Engine = (
-    Option<Translator<'static, KINESIC_ROWS, KINESIC_STATES>>,
-    Option<Components<'static, KINESIC_ROWS, KINESIC_COMPONENTS>>,
-    Option<Limiter<'static, KINESIC_ROWS>>,
-);
+type Engine = Live<'static, KINESIC_ROWS, KINESIC_STATES, KINESIC_COMPONENTS>;
 
 /// The loaded engines of a pack: translator, style components and joint limits, in this order. They borrow the pack.
 #[repr(C)]
@@ -36,10 +32,8 @@ pub unsafe extern "C" fn kinesic_pipeline_load(
     pack: *const u8,
     len: usize,
 ) -> KinesicStatus {
-    let any =
-        |(translator, components, limiter): &Engine| translator.is_some() || components.is_some() || limiter.is_some();
     // SAFETY: by the caller's promise.
-    unsafe { playing::load(model, pack, len, any) }
+    unsafe { playing::load(model, pack, len, |engine: &Engine| live::is_any(engine)) }
 }
 
 /// Makes a new state: nothing seen yet, strengths 1, all joints; limits begin at rest.
@@ -129,8 +123,7 @@ pub unsafe extern "C" fn kinesic_pipeline_coordinates(model: *const KinesicPipel
 pub unsafe extern "C" fn kinesic_pipeline_set_strength(state: *mut KinesicPipelineState, strength: f32) {
     // SAFETY: by the caller's promise.
     if let Some(state) = unsafe { storage::get_mut::<_, State<Engine>>(state) } {
-        let (translator, components, _) = &mut state.engine;
-        (translator.controls.strength, components.controls.strength) = (strength, strength);
+        live::controls(&mut state.engine).for_each(|controls| controls.strength = strength);
     }
 }
 

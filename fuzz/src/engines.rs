@@ -1,6 +1,7 @@
 //! Every engine, 100 frames. A new engine gets a function and a line in [`step_all`].
 
 use kinesic::emotion::{Emotion, EmotionState, Place};
+use kinesic::engine::live::{self, Live};
 use kinesic::engine::{Engine, FromPack, Mix, MixState};
 use kinesic::face::{FaceState, FaceSynth, POINTS};
 use kinesic::limit::{LimitState, Limiter};
@@ -16,6 +17,7 @@ const STEPS: usize = 100;
 
 /// Steps every engine that takes the pack.
 pub fn step_all(pack: &Pack, frames: &mut Frames) {
+    live(pack, frames);
     translator(pack, frames);
     mechanics(pack, frames);
     components(pack, frames);
@@ -73,11 +75,19 @@ macro_rules! controls {
     }};
 }
 
+/// Whatever the pack has, in series: a new engine comes by here.
+fn live(pack: &Pack, frames: &mut Frames) {
+    hold::<Live<ROWS, 1024, 64>>(pack, frames, |state, frames| {
+        live::controls(state).for_each(|to| {
+            to.strength = frames.control();
+            to.mask = std::array::from_fn(|_| std::array::from_fn(|_| frames.control()));
+        });
+    });
+}
+
 fn translator(pack: &Pack, frames: &mut Frames) {
     hold::<Translator<ROWS, 1024>>(pack, frames, |state, frames| controls!(state, frames));
-    // In series with whatever else the pack holds, and side by side with it.
-    type Rest<'a> = (Option<Components<'a, ROWS, 64>>, Option<Limiter<'a, ROWS>>);
-    hold::<(Translator<ROWS, 1024>, Rest)>(pack, frames, |(state, _), frames| controls!(state, frames));
+    // Side by side with what else the pack holds.
     type Both<'a> = Mix<(Translator<'a, ROWS, 1024>, Option<Components<'a, ROWS, 64>>)>;
     hold::<Both>(pack, frames, |state: &mut MixState<_, 2>, frames| {
         (state.weights, state.source) = ([frames.control(), frames.control()], frames.control());

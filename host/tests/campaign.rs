@@ -9,7 +9,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use hostile::Hostile;
-use kinesic::model::ModelMeta;
+use kinesic::model::{ModelMeta, Number};
 use kinesic_host::clip::JointMap;
 use kinesic_host::embed::rust_module;
 use kinesic_host::emotion::evaluate::Scorer;
@@ -49,45 +49,45 @@ const NUMBERS: [f32; 20] = [
 ];
 const COUNTS: [u32; 8] = [0, 1, 2, 3, 64, 1 << 20, 1 << 31, u32::MAX];
 
-/// Every f32 and u32 of the metadata.
-fn fields(pack: &mut Hostile) -> (Vec<&mut f32>, Vec<&mut u32>) {
-    let (mut numbers, mut counts) = (vec![&mut pack.frame_rate], Vec::new());
+/// How many f32 and u32 the metadata hold.
+fn numbers(pack: &mut Hostile) -> [usize; 2] {
+    let mut found = [1, 0];
     for model in &mut pack.models {
-        match model {
-            ModelMeta::Translator(m) => {
-                numbers.extend(&mut m.strength);
-                counts.extend([&mut m.blocks, &mut m.drives]);
-            }
-            ModelMeta::Mechanics(m) => {
-                numbers.extend([&mut m.body_height, &mut m.hip_height, &mut m.gain]);
-                counts.extend([&mut m.hidden, &mut m.code]);
-            }
-            ModelMeta::Components(m) => {
-                numbers.extend(&mut m.strength);
-                counts.extend([&mut m.count, &mut m.frames]);
-            }
-            ModelMeta::Face(m) => {
-                numbers.extend(&mut m.strength);
-                counts.extend([&mut m.clusters, &mut m.hidden]);
-            }
-            ModelMeta::Emotion(m) => {
-                numbers.extend(&mut m.duration);
-                numbers.extend(m.attributes.iter_mut().flatten().flat_map(|attribute| &mut attribute.strength));
-                counts.extend([&mut m.keyframes, &mut m.components, &mut m.hidden]);
-            }
-            ModelMeta::Limits(m) => {
-                numbers.extend([
-                    &mut m.root_velocity,
-                    &mut m.root_acceleration,
-                    &mut m.hold,
-                    &mut m.decay,
-                    &mut m.heading_velocity,
-                    &mut m.heading_acceleration,
-                ]);
-            }
-        }
+        model.numbers(&mut |number| match number {
+            Number::Count(_) => found[1] += 1,
+            Number::Strength(_) => found[0] += 2,
+            Number::Size(_) | Number::Gain(_) | Number::Own(_) => found[0] += 1,
+        });
     }
-    (numbers, counts)
+    found
+}
+
+/// Changes the f32 at one place, the first being the frame rate, and the u32 at another.
+fn put(pack: &mut Hostile, (at, to): (usize, f32), (count_at, count_to): (usize, u32)) {
+    let (mut here, mut count_here) = (1, 0);
+    if at == 0 {
+        pack.frame_rate = to;
+    }
+    for model in &mut pack.models {
+        model.numbers(&mut |number| {
+            let mut number_at = |x: &mut f32| {
+                if here == at {
+                    *x = to;
+                }
+                here += 1;
+            };
+            match number {
+                Number::Count(count) => {
+                    if count_here == count_at {
+                        *count = count_to;
+                    }
+                    count_here += 1;
+                }
+                Number::Strength(range) => range.iter_mut().for_each(number_at),
+                Number::Size(x) | Number::Gain(x) | Number::Own(x) => number_at(x),
+            }
+        });
+    }
 }
 
 fn pick<T: Copy>(of: &[T], random: &mut ChaCha8Rng) -> T {
@@ -99,15 +99,13 @@ fn change(pack: &mut Hostile, random: &mut ChaCha8Rng) {
     let (number, count) = (pick(&NUMBERS, random), pick(&COUNTS, random));
     match random.random_range(0..8) {
         0..4 => {
-            let (mut numbers, _) = fields(pack);
-            let at = random.random_range(0..numbers.len());
-            *numbers[at] = number;
+            let [numbers, _] = numbers(pack);
+            put(pack, (random.random_range(0..numbers), number), (usize::MAX, count));
         }
         4 => {
-            let (_, mut counts) = fields(pack);
-            if !counts.is_empty() {
-                let at = random.random_range(0..counts.len());
-                *counts[at] = count;
+            let [_, counts] = numbers(pack);
+            if counts > 0 {
+                put(pack, (usize::MAX, number), (random.random_range(0..counts), count));
             }
         }
         5 if !pack.joints.is_empty() => {

@@ -1,8 +1,9 @@
-//! The engines behind one interface. A new engine of core is a variant here, and a row in `host/src/view/assets/engine.js`.
+//! The engines behind one interface: what restyles frames, and body mechanics.
 
-use kinesic::engine::{Controls, Engine as Core};
+use kinesic::engine::live::{self, Live, LiveState};
+use kinesic::engine::{Engine as Core, FromPack};
 use kinesic::mechanics::{BodyMechanics, Decoupled, MechanicsState, Modulation, mix, modulate};
-use kinesic::{Components, Frame, LoadError, Pack, Pipeline, PipelineState, Pose, Rig, Skeleton, Translator};
+use kinesic::{Frame, LoadError, Pack, Pipeline, PipelineState, Pose, Rig, Skeleton};
 
 use crate::{JOINTS, ROWS};
 
@@ -19,53 +20,20 @@ pub struct Engine {
 
 #[allow(clippy::large_enum_variant, reason = "there is one, in static memory")]
 enum Model {
-    Translator(Playing<Translator<'static, ROWS, 16_384>>),
-    Components(Playing<Components<'static, ROWS, 256>>),
+    Live { pipeline: Pipeline<'static, FromFirst, ROWS>, state: PipelineState<RestylingState, ROWS> },
     Mechanics { model: BodyMechanics<'static, JOINTS, 2048, 120>, states: [MechanicsState<JOINTS, 120>; 2] },
 }
 
-/// An engine between pose and pose.
-struct Playing<E: Core<ROWS>> {
-    pipeline: Pipeline<'static, FromFirst<E>, ROWS>,
-    state: PipelineState<(E::State, bool), ROWS>,
-}
-
-impl<E: Core<ROWS>> Playing<E> {
-    fn new(pack: &Pack<'static>, engine: E) -> Result<Self, LoadError> {
-        Ok(Self { pipeline: Pipeline::new(Rig::load(pack)?, FromFirst(engine))?, state: PipelineState::new() })
-    }
-
-    fn reset(&mut self) {
-        self.state = PipelineState::new();
-    }
-
-    fn step(
-        &mut self,
-        source: &HostPose,
-        controls: impl Fn(&mut E::State) -> &mut Controls<ROWS>,
-        strength: f32,
-        mask: &Mask,
-    ) -> HostPose {
-        let (engine, _) = &mut self.state.engine;
-        let to = controls(engine);
-        to.strength = strength;
-        for (joint, weight) in mask.iter().enumerate() {
-            self.pipeline.rig().weigh(joint, *weight, &mut to.mask);
-        }
-        let mut out = Pose::identity();
-        self.pipeline.step(&mut self.state, Some(source), &mut out);
-        out
-    }
-}
+type RestylingState = (LiveState<ROWS, 16_384>, bool);
 
 /// An engine that starts from the first frame that it sees, as the host plays a clip.
-struct FromFirst<E>(E);
+struct FromFirst(Live<'static, ROWS, 16_384, 256>);
 
-impl<E: Core<ROWS>> Core<ROWS> for FromFirst<E> {
-    type State = (E::State, bool);
+impl Core<ROWS> for FromFirst {
+    type State = RestylingState;
 
     fn start(&self, (state, started): &mut Self::State, frame: &Frame<ROWS>) {
-        self.0.start(state, frame);
+        live::start_each(&self.0, state, frame);
         *started = true;
     }
 
@@ -80,19 +48,11 @@ impl<E: Core<ROWS>> Core<ROWS> for FromFirst<E> {
 impl Engine {
     /// The first engine of a pack that can be played.
     pub fn load(pack: &Pack<'static>) -> Result<Self, LoadError> {
-        let translator = Translator::load(pack);
-        let components = Components::load(pack);
-        let model = match (translator, components) {
-            (Ok(model), _) => Model::Translator(Playing::new(pack, model)?),
-            (_, Ok(model)) => Model::Components(Playing::new(pack, model)?),
-            (Err(absent @ LoadError::NoModel { .. }), Err(LoadError::NoModel { .. })) => {
-                let model = BodyMechanics::load(pack).map_err(|error| match error {
-                    LoadError::NoModel { .. } => absent,
-                    error => error,
-                })?;
-                Model::Mechanics { model, states: [MechanicsState::new(); 2] }
-            }
-            (Err(LoadError::NoModel { .. }), Err(error)) | (Err(error), _) => return Err(error),
+        let mut engine = Live::from_pack(pack)?;
+        let model = if live::keep_first(&mut engine) {
+            Model::Live { pipeline: Pipeline::new(Rig::load(pack)?, FromFirst(engine))?, state: PipelineState::new() }
+        } else {
+            Model::Mechanics { model: BodyMechanics::load(pack)?, states: [MechanicsState::new(); 2] }
         };
         Ok(Self { skeleton: Skeleton::load(pack)?, model })
     }
@@ -105,8 +65,7 @@ impl Engine {
     /// Forgets the past.
     pub fn reset(&mut self) {
         match &mut self.model {
-            Model::Translator(playing) => playing.reset(),
-            Model::Components(playing) => playing.reset(),
+            Model::Live { state, .. } => *state = PipelineState::new(),
             Model::Mechanics { states, .. } => *states = [MechanicsState::new(); 2],
         }
     }
@@ -114,8 +73,17 @@ impl Engine {
     /// One frame.
     pub fn step(&mut self, source: &HostPose, strength: f32, mask: &Mask) -> HostPose {
         match &mut self.model {
-            Model::Translator(playing) => playing.step(source, |state| &mut state.controls, strength, mask),
-            Model::Components(playing) => playing.step(source, |state| &mut state.controls, strength, mask),
+            Model::Live { pipeline, state } => {
+                let (engine, _) = &mut state.engine;
+                for controls in live::controls(engine) {
+                    controls.strength = strength;
+                    let weights = mask.iter().enumerate();
+                    weights.for_each(|(joint, weight)| pipeline.rig().weigh(joint, *weight, &mut controls.mask));
+                }
+                let mut out = Pose::identity();
+                pipeline.step(state, Some(source), &mut out);
+                out
+            }
             Model::Mechanics { model, states: [state, _] } => {
                 let (mut parts, mut out) = (Decoupled::identity(), Pose::identity());
                 model.step(state, source, &mut parts);

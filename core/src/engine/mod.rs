@@ -8,11 +8,13 @@
 //! | `(A, B)`, `(A, B, C)`, `(A, B, C, D)` | one after the other |
 //! | [`Mix<(A, B)>`](Mix) | side by side, their weighted mean |
 //! | `Option<A>` | `A` if it is there |
+//! | [`live::Live`] | whatever the pack has |
 //! | [`Pipeline<E, ROWS>`](Pipeline) | `E` between pose and pose, bad frames kept out |
 
 mod chain;
 mod controls;
 mod guard;
+pub mod live;
 mod mix;
 mod pipeline;
 

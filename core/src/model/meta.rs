@@ -123,6 +123,59 @@ impl<'a> ModelMeta<'a> {
     }
 }
 
+/// A number of a model's metadata, and what is plausible for it.
+#[derive(Debug)]
+pub enum Number<'m> {
+    /// How many of something; [`Pack::load`](super::Pack::load) refuses more than 1,048,576.
+    Count(&'m mut u32),
+    /// Least and greatest strength, within -1000 to 1000.
+    Strength(&'m mut [f32; 2]),
+    /// A size of the body, 0.01 to 1000 m.
+    Size(&'m mut f32),
+    /// A gain, within -1000 to 1000.
+    Gain(&'m mut f32),
+    /// The engine's own loader says what it may be.
+    Own(&'m mut f32),
+}
+
+impl ModelMeta<'_> {
+    /// Every number in it, in order. Loading checks them by this list, and tests change them by it.
+    pub fn numbers(&mut self, visit: &mut dyn FnMut(Number)) {
+        use Number::{Count, Gain, Own, Size, Strength};
+        match self {
+            Self::Translator(meta) => {
+                [&mut meta.blocks, &mut meta.drives].into_iter().for_each(|count| visit(Count(count)));
+                visit(Strength(&mut meta.strength));
+            }
+            Self::Mechanics(meta) => {
+                [&mut meta.body_height, &mut meta.hip_height].into_iter().for_each(|size| visit(Size(size)));
+                visit(Gain(&mut meta.gain));
+                [&mut meta.hidden, &mut meta.code].into_iter().for_each(|count| visit(Count(count)));
+            }
+            Self::Components(meta) => {
+                [&mut meta.count, &mut meta.frames].into_iter().for_each(|count| visit(Count(count)));
+                visit(Strength(&mut meta.strength));
+            }
+            Self::Face(meta) => {
+                [&mut meta.clusters, &mut meta.hidden].into_iter().for_each(|count| visit(Count(count)));
+                visit(Strength(&mut meta.strength));
+            }
+            Self::Limits(meta) => {
+                let rates = [&mut meta.root_velocity, &mut meta.root_acceleration];
+                let turns = [&mut meta.heading_velocity, &mut meta.heading_acceleration];
+                let times = [&mut meta.hold, &mut meta.decay];
+                rates.into_iter().chain(turns).chain(times).for_each(|number| visit(Own(number)));
+            }
+            Self::Emotion(meta) => {
+                let counts = [&mut meta.keyframes, &mut meta.components, &mut meta.hidden];
+                counts.into_iter().for_each(|count| visit(Count(count)));
+                meta.attributes.iter_mut().flatten().for_each(|attribute| visit(Strength(&mut attribute.strength)));
+                meta.duration.iter_mut().for_each(|time| visit(Own(time)));
+            }
+        }
+    }
+}
+
 /// How a translator's states are shared among the joints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Form {

@@ -11,11 +11,7 @@ mod ranges;
 mod tensor;
 
 pub use error::LoadError;
-pub use meta::{
-    ATTRIBUTES, AttributeMeta, ComponentsMeta, EmotionMeta, FaceMeta, Form, JointMeta, Kind, LimitsMeta, List,
-    MechanicsMeta, Metadata, ModelMeta, TensorMeta, TensorType, TranslatorMeta,
-};
-
+pub use meta::*;
 pub use numbers::{AnyNumbers, Floats, Integers, Numbers};
 pub use tensor::Element;
 use tensor::payload_in_bounds;

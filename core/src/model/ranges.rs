@@ -5,7 +5,7 @@
 
 use core::ops::RangeInclusive;
 
-use super::{LoadError, Metadata, ModelMeta, Pack};
+use super::{LoadError, Metadata, ModelMeta, Number, Pack};
 
 /// Frames a second.
 const FRAME_RATE: RangeInclusive<f32> = 1.0..=1000.0;
@@ -71,29 +71,24 @@ pub(super) fn check_tensors(pack: &Pack) -> Result<(), LoadError> {
 
 /// The first number of a model that is out of its range.
 fn model(meta: &ModelMeta) -> Option<&'static str> {
-    let strong = |[low, high]: [f32; 2]| low >= -STRENGTH && low <= high && high <= STRENGTH;
-    let (counts, strong) = match meta {
-        ModelMeta::Translator(meta) => ([meta.blocks, meta.drives, 0], strong(meta.strength)),
-        ModelMeta::Components(meta) => ([meta.count, meta.frames, 0], strong(meta.strength)),
-        ModelMeta::Face(meta) => ([meta.clusters, meta.hidden, 0], strong(meta.strength)),
-        ModelMeta::Emotion(meta) => (
-            [meta.keyframes, meta.components, meta.hidden],
-            meta.attributes.iter().flatten().all(|attribute| strong(attribute.strength)),
-        ),
-        ModelMeta::Mechanics(meta) => {
-            if !(SIZE.contains(&meta.body_height) && SIZE.contains(&meta.hip_height)) {
-                return Some("size of the body, expected 0.01 to 1000 m");
+    let (mut meta, mut found) = (*meta, None);
+    meta.numbers(&mut |number| {
+        let (sound, field) = match number {
+            Number::Count(count) => (*count <= COUNT, "shape of a model, expected at most 1048576 of anything"),
+            Number::Strength([low, high]) => (
+                *low >= -STRENGTH && *low <= *high && *high <= STRENGTH,
+                "range of strengths, expected low to high within -1000 to 1000",
+            ),
+            Number::Size(size) => (SIZE.contains(&*size), "size of the body, expected 0.01 to 1000 m"),
+            Number::Gain(gain) => {
+                ((-GAIN..=GAIN).contains(&*gain), "gain of the activity index, expected -1000 to 1000")
             }
-            if !(-GAIN..=GAIN).contains(&meta.gain) {
-                return Some("gain of the activity index, expected -1000 to 1000");
-            }
-            ([meta.hidden, meta.code, 0], true)
+            // Such as a limiter's rates, which it checks against the frame rate.
+            Number::Own(_) => (true, ""),
+        };
+        if !sound && found.is_none() {
+            found = Some(field);
         }
-        // The limiter checks its rates and times against the frame rate.
-        ModelMeta::Limits(_) => ([0; 3], true),
-    };
-    if counts.iter().any(|count| *count > COUNT) {
-        return Some("shape of a model, expected at most 1048576 of anything");
-    }
-    (!strong).then_some("range of strengths, expected low to high within -1000 to 1000")
+    });
+    found
 }
