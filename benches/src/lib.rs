@@ -1,5 +1,5 @@
 //! Host benches: the device's engines with criterion (`benches/`), training jobs beside what is used today
 //! (`src/bin`, `peers/`).
 
-pub mod made;
 pub mod measure;
+pub mod synthetic;

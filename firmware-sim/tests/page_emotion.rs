@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use kinesic_firmware_sim::browser::Browser;
 use kinesic_host::clip::JointMap;
 use kinesic_host::emotion::play::{self, HostState};
-use kinesic_host::emotion::{EmotionModel, HostEmotion, made};
+use kinesic_host::emotion::{EmotionModel, HostEmotion, synthetic};
 use kinesic_host::gait::{Manner, walk};
 use kinesic_host::models;
 use kinesic_host::pack::{PackFile, Provenance};
@@ -24,7 +24,7 @@ fn pack(name: &str, (model, rig): &(EmotionModel, Rig)) -> ViewPack {
 
 /// Weary from 0 to 1, swaying from -1 to 1; a cycle.
 fn moods() -> ViewPack {
-    pack("moods", &made::model(2))
+    pack("moods", &synthetic::model(2))
 }
 
 fn open(folder: &Path, shown: &View, size: [u32; 2], phone: bool) -> Browser {
@@ -188,7 +188,7 @@ fn ahead(at: &mut Browser) -> Vec<f64> {
 #[ignore = "needs chromium: firmware-sim/setup.sh"]
 fn emotions_stand_beside_other_packs_and_each_other() {
     let folder = tempfile::tempdir().unwrap();
-    let (mut model, rig) = made::model(1);
+    let (mut model, rig) = synthetic::model(1);
     model.cycle = false;
     let emotions = vec![moods(), pack("once", &(model, rig))];
     let shown = View { emotions: emotions.clone(), ..View::default() };

@@ -13,7 +13,7 @@ use kinesic_host::gait::{Manner, walk};
 use kinesic_host::models;
 use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_host::prepare::Source;
-use kinesic_host::report::{figures, latency};
+use kinesic_host::report::{latency, stick_figures};
 use kinesic_host::rig::Rig;
 use kinesic_host::translate::{Settings, play};
 use kinesic_host::view::{self, View, ViewClip, ViewPack};
@@ -49,7 +49,7 @@ fn walks_before_and_after() {
     let result = rig.clip(&play(&pack, &rig, &rig.poses(&source), &Settings::default()).unwrap(), source.frame_time);
     let rows = [("a walk", &source), ("through models/weary.kin", &result), ("the same walk, weary", &target)];
     // On white: pages are read on dark grounds too.
-    let svg = figures(&rows).replacen(">\n", ">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n", 1);
+    let svg = stick_figures(&rows).replacen(">\n", ">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n", 1);
     drawing("walk.svg", &svg);
 }
 
@@ -137,7 +137,7 @@ fn the_live_page() {
 #[test]
 #[ignore = "needs chromium: firmware-sim/setup.sh"]
 fn emotions() {
-    let (model, rig) = emotion::made::model(2);
+    let (model, rig) = emotion::synthetic::model(2);
     let file = PackFile::from_bytes(&model.pack(&rig, &Provenance::default()));
     let emotions = vec![ViewPack { name: "moods".to_owned(), file }];
     let shown = View { emotions, ..View::default() };

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use kinesic::face::{Landmarks, POINTS};
-use kinesic_host::face::{Face, TrainOptions, made, train};
+use kinesic_host::face::{Face, TrainOptions, synthetic, train};
 use kinesic_host::pack::Provenance;
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
@@ -75,7 +75,7 @@ fn folder() -> tempfile::TempDir {
     }
     std::fs::remove_dir_all(folder.path().join("made")).unwrap();
     face(folder.path());
-    let (emotion, rig) = kinesic_host::emotion::made::model(2);
+    let (emotion, rig) = kinesic_host::emotion::synthetic::model(2);
     std::fs::write(folder.path().join("moods.kin"), emotion.pack(&rig, &Provenance::default())).unwrap();
     std::os::unix::fs::symlink(repository().join("models").canonicalize().unwrap(), folder.path().join("models"))
         .unwrap();
@@ -85,7 +85,7 @@ fn folder() -> tempfile::TempDir {
 /// A table of labelled faces, `smile.kin` made of it, and a picture `me.jpg` with its landmarks.
 fn face(folder: &Path) {
     let mut random = ChaCha8Rng::seed_from_u64(1);
-    let faces = made::faces(300, &mut random);
+    let faces = synthetic::faces(300, &mut random);
     let options = TrainOptions { clusters: 1, ..TrainOptions::default() };
     let trained = train(&faces, "smile", &options).unwrap();
     std::fs::write(folder.join("smile.kin"), trained.model.pack(&Provenance::default())).unwrap();
@@ -95,8 +95,8 @@ fn face(folder: &Path) {
         |face: &Face| format!("{},{},{}{}\n", face.picture, face.person, face.label.unwrap(), numbers(&face.landmarks));
     let rows = faces.iter().map(row).collect::<String>();
     std::fs::write(folder.join("faces.csv"), format!("image,subject,smile{columns}\n{rows}")).unwrap();
-    let me = made::landmarks(0.4, 0.0, &mut random);
-    made::draw(&me, 250).save(folder.join("me.jpg")).unwrap();
+    let me = synthetic::landmarks(0.4, 0.0, &mut random);
+    synthetic::draw(&me, 250).save(folder.join("me.jpg")).unwrap();
     std::fs::write(folder.join("me.csv"), format!("image{columns}\nme.jpg{}\n", numbers(&me))).unwrap();
 }
 

@@ -7,7 +7,7 @@ use kinesic_host::components::{
     Descent, Motion, Objective, Optimiser, Sparsity, TrainError, TrainOptions, Weights, choose, descend, gather, learn,
     noise, pca, prune, refit, sparse, train, train_kept,
 };
-use kinesic_host::reached::{Reached, Unreadable};
+use kinesic_host::step_cache::{StepCache, Unreadable};
 
 fn motion() -> Motion {
     let rig = rig();
@@ -211,8 +211,8 @@ fn steps_of_a_checkpoint_that_are_none_of_this_training_are_refused() {
         ("learn", vec![f64::NAN; 1000]),
     ] {
         let mut kept = Kept([(name.to_owned(), result)].into());
-        let reached = Reached::new(&mut kept).unwrap();
-        let refused = train_kept(&rig, &content, &style, "x", &options, &reached).map(drop);
+        let cache = StepCache::new(&mut kept).unwrap();
+        let refused = train_kept(&rig, &content, &style, "x", &options, &cache).map(drop);
         assert_eq!(refused, Err(TrainError::Checkpoint(Unreadable)), "{name}");
     }
 }

@@ -5,7 +5,7 @@ use kinesic::model::{ATTRIBUTES, AttributeMeta, EmotionMeta, Kind, ModelMeta};
 use kinesic::pose::{World, forward};
 use kinesic::rig::{Drift, JointKind};
 use kinesic::{Emotion, Engine, Frame, Pack, Pipeline, PipelineState, Pose, Rig, Skeleton};
-use kinesic_host::emotion::made::{self, COMPONENTS, KEYS};
+use kinesic_host::emotion::synthetic::{self, COMPONENTS, KEYS};
 use kinesic_host::pack::{PackFile, PackWriter, Provenance};
 use nalgebra::{UnitQuaternion, Vector3};
 use proptest::prelude::*;
@@ -30,13 +30,13 @@ impl<'a> Device<'a> {
 }
 
 fn file(attributes: usize) -> PackFile {
-    let (model, rig) = made::model(attributes);
+    let (model, rig) = synthetic::model(attributes);
     PackFile::from_bytes(&model.pack(&rig, &Provenance::default()))
 }
 
 /// The made walk as a gesture: it ends.
 fn gesture() -> PackFile {
-    let (mut model, rig) = made::model(1);
+    let (mut model, rig) = synthetic::model(1);
     model.cycle = false;
     PackFile::from_bytes(&model.pack(&rig, &Provenance::default()))
 }

@@ -8,7 +8,7 @@ use std::process::Command;
 
 use hostile::Hostile;
 use kinesic_host::clip::{self, Clip};
-use kinesic_host::face::made;
+use kinesic_host::face::synthetic;
 use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_tests::{data, table};
 use nalgebra::{Matrix4, Point3, Quaternion, Translation3, UnitQuaternion, Vector3};
@@ -220,7 +220,7 @@ fn a_pack_as_rust_source_compiles_to_the_same_bytes() {
     two.models.push(two.models[0]);
     std::fs::write(at.join("two.kin"), two.bytes()).unwrap();
     let mut mixed = Hostile::of(&pack("mechanics.kin"));
-    let faces = made::model(2, 3, &mut ChaCha8Rng::seed_from_u64(3)).pack(&Provenance::default());
+    let faces = synthetic::model(2, 3, &mut ChaCha8Rng::seed_from_u64(3)).pack(&Provenance::default());
     mixed.add(&PackFile::from_bytes(&faces));
     std::fs::write(at.join("mixed.kin"), mixed.bytes()).unwrap();
     let cases: [(&str, &[&str]); 5] = [

@@ -4,8 +4,8 @@ use image::{DynamicImage, Rgb, RgbImage};
 use kinesic::face::{CONTOUR, FaceState, Landmarks, POINTS};
 use kinesic_host::face::warp::{Warp, WarpError};
 use kinesic_host::face::{
-    Face, HostFace, LandmarksFault, TrainError, TrainOptions, Trained, Wish, edit, evaluate, hold_out, landmarks, made,
-    train,
+    Face, HostFace, LandmarksFault, TrainError, TrainOptions, Trained, Wish, edit, evaluate, hold_out, landmarks,
+    synthetic, train,
 };
 use kinesic_host::pack::{PackFile, Provenance};
 use rand::SeedableRng;
@@ -17,7 +17,7 @@ fn random(seed: u64) -> ChaCha8Rng {
 
 fn trained(seed: u64) -> Trained {
     let options = TrainOptions { clusters: 3, ..TrainOptions::default() };
-    train(&made::faces(600, &mut random(seed)), "smile", &options).unwrap()
+    train(&synthetic::faces(600, &mut random(seed)), "smile", &options).unwrap()
 }
 
 fn packed(trained: &Trained) -> PackFile {
@@ -28,7 +28,7 @@ fn packed(trained: &Trained) -> PackFile {
 fn made_smiles_are_ranked_and_an_edit_scores_as_asked() {
     let file = packed(&trained(1));
     let pack = file.pack().unwrap();
-    let others = made::faces(300, &mut random(2));
+    let others = synthetic::faces(300, &mut random(2));
     let report = evaluate(&pack, &others).unwrap();
     assert!(report.pair_accuracy > 0.97 && report.spearman > 0.8, "{report:?}");
     // Strengths are in units of the labels.
@@ -53,11 +53,11 @@ fn the_same_seed_gives_the_same_bytes() {
 
 #[test]
 fn the_device_keeps_its_laws() {
-    let file = PackFile::from_bytes(&made::model(12, 10, &mut random(4)).pack(&Provenance::default()));
+    let file = PackFile::from_bytes(&synthetic::model(12, 10, &mut random(4)).pack(&Provenance::default()));
     let pack = file.pack().unwrap();
     let model = HostFace::load(&pack).unwrap();
     for seed in 0..40 {
-        let face = made::landmarks(0.3, (seed as f32 - 20.0) / 20.0, &mut random(seed));
+        let face = synthetic::landmarks(0.3, (seed as f32 - 20.0) / 20.0, &mut random(seed));
         let mut state = FaceState::new();
         let mut offsets = [[1.0; 2]; POINTS];
         model.step(&mut state, &face, &mut offsets);
@@ -100,7 +100,7 @@ fn a_warp_moves_landmarks_folds_nowhere_and_leaves_the_background() {
     picture.put_pixel(0, 0, Rgb([1, 2, 3]));
     let picture = DynamicImage::ImageRgb8(picture);
     for seed in 0..8 {
-        let face = made::landmarks(0.2, 0.1 * seed as f32 - 0.4, &mut random(seed));
+        let face = synthetic::landmarks(0.2, 0.1 * seed as f32 - 0.4, &mut random(seed));
         let edit = edit(&pack, &face, Wish::Change(0.8)).unwrap().unwrap();
         let warp = Warp::new(&face, &edit.offsets).unwrap();
         assert!(warp.least_jacobian() > 0.0, "folds: {}", warp.least_jacobian());
@@ -125,7 +125,7 @@ fn a_warp_moves_landmarks_folds_nowhere_and_leaves_the_background() {
 
 #[test]
 fn a_warp_by_nothing_is_the_picture_and_nonsense_is_refused() {
-    let face = made::landmarks(0.2, 0.0, &mut random(1));
+    let face = synthetic::landmarks(0.2, 0.0, &mut random(1));
     let picture = DynamicImage::ImageLuma8(image::GrayImage::from_fn(250, 250, |x, y| image::Luma([(x ^ y) as u8])));
     let warp = Warp::new(&face, &[[0.0; 2]; POINTS]).unwrap();
     assert_eq!(warp.apply(&picture).unwrap(), picture);
@@ -152,7 +152,7 @@ fn table(faces: &[Face]) -> String {
 
 #[test]
 fn a_table_is_read_as_written_and_faults_name_line_and_column() {
-    let faces = made::faces(5, &mut random(7));
+    let faces = synthetic::faces(5, &mut random(7));
     let text = table(&faces);
     assert_eq!(landmarks::parse(text.as_bytes(), Some("smile")).unwrap(), faces);
     let fault = |change: &dyn Fn(&mut Vec<Vec<String>>)| {
@@ -175,7 +175,7 @@ fn a_table_is_read_as_written_and_faults_name_line_and_column() {
 
 #[test]
 fn training_says_what_is_missing() {
-    let mut faces = made::faces(60, &mut random(8));
+    let mut faces = synthetic::faces(60, &mut random(8));
     let all = |faces: &[Face], clusters| train(faces, "smile", &TrainOptions { clusters, ..TrainOptions::default() });
     assert_eq!(all(&faces, 61).unwrap_err(), TrainError::Clusters { found: 61, faces: 60 });
     let hidden = TrainOptions { hidden: 65, ..TrainOptions::default() };
@@ -203,7 +203,7 @@ fn the_commands_work_together() {
         assert!(success, "{args}: {text}");
         text
     };
-    let faces = made::faces(400, &mut random(9));
+    let faces = synthetic::faces(400, &mut random(9));
     std::fs::write(folder.path().join("faces.csv"), table(&faces)).unwrap();
     RgbImage::from_fn(250, 250, |x, y| Rgb([x as u8, y as u8, 9])).save(folder.path().join("7.png")).unwrap();
     let train = "train face --landmarks faces.csv --attribute smile --clusters 2 --out smile.kin";

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::Command;
 
 use kinesic_host::clip;
-use kinesic_host::emotion::made;
+use kinesic_host::emotion::synthetic;
 use kinesic_host::pack::Provenance;
 
 /// The JSON that the command prints.
@@ -19,7 +19,7 @@ fn synth(folder: &Path, line: &str) -> serde_json::Value {
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     for (name, attributes) in [("one.kin", 1), ("two.kin", 2)] {
-        let (model, rig) = made::model(attributes);
+        let (model, rig) = synthetic::model(attributes);
         std::fs::write(folder.path().join(name), model.pack(&rig, &Provenance::default())).unwrap();
     }
     folder

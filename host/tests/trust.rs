@@ -12,7 +12,7 @@ use hostile::Hostile;
 use kinesic::model::ModelMeta;
 use kinesic_host::clip::WriteOptions;
 use kinesic_host::emotion;
-use kinesic_host::face::{TrainOptions, made, train};
+use kinesic_host::face::{TrainOptions, synthetic, train};
 use kinesic_host::gait::{Manner, walk};
 use kinesic_host::limit::{JointLimit, LimitsModel};
 use kinesic_host::models;
@@ -63,7 +63,7 @@ fn write(folder: &Path, name: &str, pack: &Hostile) {
 }
 
 fn emotions() -> PackFile {
-    let (model, rig) = emotion::made::model(1);
+    let (model, rig) = emotion::synthetic::model(1);
     PackFile::from_bytes(&model.pack(&rig, &Provenance::default()))
 }
 
@@ -168,9 +168,9 @@ fn frame_rates_and_clocks_that_would_fill_the_memory_are_refused() {
 fn faces(folder: &Path) -> Hostile {
     let mut random = ChaCha8Rng::seed_from_u64(1);
     let options = TrainOptions { clusters: 3, ..TrainOptions::default() };
-    let trained = train(&made::faces(300, &mut random), "smile", &options).unwrap();
-    let landmarks = made::landmarks(0.3, 0.2, &mut random).map(|point| point.map(|x| 2.0 * x));
-    made::draw(&landmarks, 500).save(folder.join("me.png")).unwrap();
+    let trained = train(&synthetic::faces(300, &mut random), "smile", &options).unwrap();
+    let landmarks = synthetic::landmarks(0.3, 0.2, &mut random).map(|point| point.map(|x| 2.0 * x));
+    synthetic::draw(&landmarks, 500).save(folder.join("me.png")).unwrap();
     let head: String = (0..68).map(|i| format!(",x{i},y{i}")).collect();
     let row: String = landmarks.iter().map(|[x, y]| format!(",{x},{y}")).collect();
     std::fs::write(folder.join("me.csv"), format!("image{head}\nme.png{row}\n")).unwrap();

@@ -5,7 +5,7 @@ mod common;
 use common::{neutral, rig};
 use kinesic::pose::{World, forward};
 use kinesic::{Emotion, EmotionState, Frame, Pipeline, PipelineState, Pose, Translator, TranslatorState};
-use kinesic_host::emotion::made;
+use kinesic_host::emotion::synthetic;
 use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_host::rig::MAX_ROWS;
 use kinesic_host::translate::FormChoice;
@@ -103,7 +103,7 @@ fn a_step_allocates_nothing() {
 
 #[test]
 fn an_emotion_allocates_nothing() {
-    let (model, rig) = made::model(2);
+    let (model, rig) = synthetic::model(2);
     let file = PackFile::from_bytes(&model.pack(&rig, &Provenance::default()));
     let (mut state, mut frame) = (EmotionState::<20, 13>::new(), Frame::new());
     let info = allocation_counter::measure(|| {

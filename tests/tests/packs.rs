@@ -11,7 +11,7 @@ use kinesic::model::Kind;
 use kinesic::{LoadError, Pack, Pipeline, PipelineState, Pose, Translator};
 use kinesic_host::emotion;
 use kinesic_host::engines::known;
-use kinesic_host::face::made;
+use kinesic_host::face::synthetic;
 use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_host::quantise::{to_int8, to_int16};
 use kinesic_host::translate::FormChoice;
@@ -58,11 +58,11 @@ fn per_joint_int16() -> Vec<u8> {
 }
 
 fn face() -> Vec<u8> {
-    made::model(2, 3, &mut ChaCha8Rng::seed_from_u64(3)).pack(&Provenance::default())
+    synthetic::model(2, 3, &mut ChaCha8Rng::seed_from_u64(3)).pack(&Provenance::default())
 }
 
 fn emotion_pack() -> Vec<u8> {
-    let (model, rig) = emotion::made::sized(2, [4, 6, 3]);
+    let (model, rig) = emotion::synthetic::sized(2, [4, 6, 3]);
     model.pack(&rig, &Provenance::default())
 }
 

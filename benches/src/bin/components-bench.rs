@@ -17,8 +17,8 @@ use std::time::Instant;
 
 use faer::linalg::solvers::Solve;
 use faer::{Mat, MatRef};
-use kinesic_benches::made;
 use kinesic_benches::measure::seconds_a_call;
+use kinesic_benches::synthetic;
 use kinesic_host::clip::ReadOptions;
 use kinesic_host::components::{
     FRAME_RATE, Factors, Motion, Objective, Optimiser, Sparsity, Weights, choose, content_distance, gram, jerk, learn,
@@ -121,8 +121,8 @@ fn strongest(motion: MatRef<'_, f64>, count: usize, density: f64) -> Factors {
 fn all_motions() -> Fallible<Vec<Mat<f64>>> {
     let mut motions = CLIPS.iter().map(|name| Ok(own(name)?.1.values)).collect::<Fallible<Vec<_>>>()?;
     let [frames, channels] = MADE;
-    let rows = made::rows(&made::channels(channels, 21), frames, |t| t, 22);
-    motions.push(made::centred(MatRef::from_row_major_slice(&rows, frames, channels)));
+    let rows = synthetic::rows(&synthetic::channels(channels, 21), frames, |t| t, 22);
+    motions.push(synthetic::centred(MatRef::from_row_major_slice(&rows, frames, channels)));
     Ok(motions)
 }
 

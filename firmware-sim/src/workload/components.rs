@@ -12,7 +12,7 @@ use rand::{RngExt, SeedableRng};
 
 use super::translator::numbers;
 use super::{Prepared, WorkloadError, on_host};
-use crate::made::{self, FRAME_RATE};
+use crate::synthetic::{self, FRAME_RATE};
 
 const SEED: u64 = 3;
 /// Share of the joints that a component moves: the density that training chooses is about this.
@@ -21,8 +21,8 @@ const DENSITY: f64 = 0.4;
 const STORED: usize = 60;
 
 pub fn prepare(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
-    let rig = made::short_rig();
-    let walk = made::walk_on(&rig.skeleton, frames, SEED);
+    let rig = synthetic::short_rig();
+    let walk = synthetic::walk_on(&rig.skeleton, frames, SEED);
     on_host::<Restyle>(name, "components.kin", pack(&rig, &walk), &numbers(&rig, &walk, JOINTS))
 }
 

@@ -8,7 +8,7 @@ use kinesic_workloads::posed::{Limit, SHORT_JOINTS};
 
 use super::translator::numbers;
 use super::{Prepared, WorkloadError, on_host};
-use crate::made::{self, FRAME_RATE};
+use crate::synthetic::{self, FRAME_RATE};
 
 const SEED: u64 = 3;
 const X: [f32; 3] = [1.0, 0.0, 0.0];
@@ -16,9 +16,9 @@ const Y: [f32; 3] = [0.0, 1.0, 0.0];
 const Z: [f32; 3] = [0.0, 0.0, 1.0];
 
 pub fn prepare(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
-    let rig = made::short_rig();
+    let rig = synthetic::short_rig();
     let provenance = Provenance { tool: "kinesic-firmware-sim".to_owned(), seed: SEED, ..Provenance::default() };
-    let walk = made::walk_on(&rig.skeleton, frames, SEED);
+    let walk = synthetic::walk_on(&rig.skeleton, frames, SEED);
     on_host::<Limit>(name, "limit.kin", limits(&rig).pack(&rig, &provenance)?, &numbers(&rig, &walk, SHORT_JOINTS))
 }
 

@@ -12,7 +12,7 @@ use kinesic_workloads::mechanics::{JOINTS, Mechanics};
 use super::translator::numbers;
 use super::{Prepared, WorkloadError, aligned, on_host};
 use crate::data::home;
-use crate::made;
+use crate::synthetic;
 
 const SEED: u64 = 3;
 const MODEL: &str = "models/mechanics.kin";
@@ -37,7 +37,7 @@ fn over_a_walk<N: Numbers>(
     let refused = |_| WorkloadError::Refused { name: name.to_owned() };
     let words = aligned(&pack);
     let rig = Rig::from_pack(&Pack::load(&bytemuck::cast_slice(&words)[..pack.len()]).map_err(refused)?)?;
-    let clip = made::walk_on(&rig.skeleton, frames, SEED);
+    let clip = synthetic::walk_on(&rig.skeleton, frames, SEED);
     on_host::<Mechanics<N>>(name, pack_name, pack, &numbers(&rig, &clip, JOINTS))
 }
 
@@ -61,7 +61,7 @@ mod tests {
         let model = HostMechanics::load(&pack).unwrap();
         let (mut state, mut parts) = (MechanicsState::new(), Decoupled::identity());
         let mut seen = [[false; 2]; 2];
-        for pose in rig.poses(&made::walk_on(&rig.skeleton, 1000, SEED)) {
+        for pose in rig.poses(&synthetic::walk_on(&rig.skeleton, 1000, SEED)) {
             model.step(&mut state, &pose, &mut parts);
             for (seen, stands) in seen.iter_mut().zip(state.contacts().stands) {
                 seen[usize::from(stands)] = true;

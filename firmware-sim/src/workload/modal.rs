@@ -9,7 +9,7 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 
 use super::{Prepared, WorkloadError, on_host};
-use crate::made::FRAME_RATE;
+use crate::synthetic::FRAME_RATE;
 
 const SEED: u64 = 3;
 

@@ -15,7 +15,7 @@ use rand::{RngExt, SeedableRng};
 use super::mechanics::model;
 use super::translator::numbers;
 use super::{Prepared, WorkloadError, on_host};
-use crate::made::{self, FRAME_RATE};
+use crate::synthetic::{self, FRAME_RATE};
 
 const SEED: u64 = 3;
 const LAYERS: [&str; 3] = ["mechanics/hidden", "mechanics/code", "mechanics/decoder"];
@@ -65,7 +65,7 @@ fn over_a_walk<N: Numbers>(
     let refused = |_| WorkloadError::Refused { name: name.to_owned() };
     let view: Pack = pack.pack().map_err(refused)?;
     let rig = Rig::from_pack(&view)?;
-    let clip = made::walk_on(&rig.skeleton, frames, SEED);
+    let clip = synthetic::walk_on(&rig.skeleton, frames, SEED);
     on_host::<Network<N>>(name, pack_name, pack.bytes().to_vec(), &numbers(&rig, &clip, JOINTS))
 }
 

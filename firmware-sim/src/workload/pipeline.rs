@@ -4,7 +4,7 @@
 use kinesic::Pack;
 use kinesic::model::Kind;
 use kinesic_host::clip::Clip;
-use kinesic_host::emotion::made::{Moment, over};
+use kinesic_host::emotion::synthetic::{Moment, over};
 use kinesic_host::pack::{PackFile, PackWriter, Provenance};
 use kinesic_host::quantise::{to_int8, to_int16};
 use kinesic_host::rig::Rig;
@@ -13,7 +13,7 @@ use kinesic_workloads::posed::{COUNT, KEYS, Whole};
 
 use super::translator::numbers;
 use super::{Prepared, WorkloadError, aligned, components, limit, mechanics, on_host, translator};
-use crate::made::{self, FRAME_RATE};
+use crate::synthetic::{self, FRAME_RATE};
 
 const SEED: u64 = 3;
 /// Hidden units of the emotion, the paper's.
@@ -72,7 +72,7 @@ fn prepare(
     let rig = Rig::from_pack(&Pack::load(&bytemuck::cast_slice(&words)[..model.len()]).map_err(refused)?)?;
     let limits = limit::limits(&rig);
     let rig = limits.rig(&rig)?;
-    let walk = made::walk_on(&rig.skeleton, frames, SEED);
+    let walk = synthetic::walk_on(&rig.skeleton, frames, SEED);
     let mut pack = PackWriter::new(Kind::Style, "made", FRAME_RATE as f32);
     rig.write(&mut pack);
     let parts = [

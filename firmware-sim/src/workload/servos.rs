@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 
 use super::styled::with_limits;
 use super::{Prepared, WorkloadError, on_host, translator};
-use crate::made::FRAME_RATE;
+use crate::synthetic::FRAME_RATE;
 
 /// Principal coordinates of the translator.
 const DRIVES: usize = 6;

@@ -11,7 +11,7 @@ use kinesic_workloads::posed::{GAIT_JOINTS, Styled, StyledFixed};
 
 use super::translator::{self, numbers};
 use super::{Prepared, WorkloadError, aligned, limit, on_host};
-use crate::made::FRAME_RATE;
+use crate::synthetic::FRAME_RATE;
 
 const SEED: u64 = 3;
 

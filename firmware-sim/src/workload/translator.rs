@@ -11,7 +11,7 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 
 use super::{Prepared, WorkloadError, on_host};
-use crate::made::{self, FRAME_RATE};
+use crate::synthetic::{self, FRAME_RATE};
 
 const SEED: u64 = 3;
 const ORDER: usize = 40;
@@ -42,7 +42,7 @@ fn made_per_joint(frames: usize) -> (Vec<u8>, Vec<Vec<f32>>) {
         block[10..].iter_mut().for_each(|c| *c *= 0.05);
         block
     };
-    let (rig, clip) = (made::rig(), made::walk(frames, SEED));
+    let (rig, clip) = (synthetic::rig(), synthetic::walk(frames, SEED));
     let bank = (0..rig.rows()).map(|_| (0..ORDER / 2).map(|_| block()).collect()).collect();
     let motion = rig.locals(&rig.poses(&clip));
     (pack(&rig, &motion, BankModel::PerJoint(bank), Vec::new()), numbers(&rig, &clip, JOINTS))
@@ -60,7 +60,7 @@ pub fn whole_body_fixed(name: &str, frames: usize) -> Result<Prepared, WorkloadE
 }
 
 fn made_whole_body(frames: usize) -> (Vec<u8>, Vec<Vec<f32>>) {
-    let (rig, clip) = (made::rig(), made::walk(frames, SEED));
+    let (rig, clip) = (synthetic::rig(), synthetic::walk(frames, SEED));
     (shared(&rig, &clip), numbers(&rig, &clip, JOINTS))
 }
 

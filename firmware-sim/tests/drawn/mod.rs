@@ -1,6 +1,6 @@
 //! Faces that nobody has.
 
-use kinesic_host::face::{TrainOptions, made, train};
+use kinesic_host::face::{TrainOptions, synthetic, train};
 use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_host::view::ViewFace;
 use rand::SeedableRng;
@@ -10,11 +10,11 @@ use rand::rngs::ChaCha8Rng;
 pub fn faces() -> (PackFile, [ViewFace; 2]) {
     let mut random = ChaCha8Rng::seed_from_u64(1);
     let trained =
-        train(&made::faces(600, &mut random), "smile", &TrainOptions { clusters: 3, ..TrainOptions::default() });
+        train(&synthetic::faces(600, &mut random), "smile", &TrainOptions { clusters: 3, ..TrainOptions::default() });
     let file = PackFile::from_bytes(&trained.unwrap().model.pack(&Provenance::default()));
     let faces = [("a face", 2, 0.3), ("another", 4, 0.8)].map(|(name, size, strength)| {
-        let landmarks = made::landmarks(strength, 0.2, &mut random).map(|point| point.map(|x| size as f32 * x));
-        ViewFace { name: name.to_owned(), picture: made::draw(&landmarks, 250 * size).into(), landmarks }
+        let landmarks = synthetic::landmarks(strength, 0.2, &mut random).map(|point| point.map(|x| size as f32 * x));
+        ViewFace { name: name.to_owned(), picture: synthetic::draw(&landmarks, 250 * size).into(), landmarks }
     });
     (file, faces)
 }

@@ -3,7 +3,7 @@
 use clap::CommandFactory;
 use clap_complete::Shell;
 
-use super::{Cli, say};
+use super::{Cli, print};
 
 /// Print a script that completes this command's words in a shell
 #[derive(Debug, clap::Args)]
@@ -22,6 +22,6 @@ pub struct Args {
 pub fn run(args: &Args) -> miette::Result<()> {
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut Cli::command(), "kinesic", &mut script);
-    say::raw(&String::from_utf8_lossy(&script));
+    print::raw(&String::from_utf8_lossy(&script));
     Ok(())
 }

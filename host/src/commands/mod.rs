@@ -1,7 +1,7 @@
 //! The subcommands. Each file reads its arguments, calls the library and prints.
 
 #[macro_use]
-mod say;
+mod print;
 
 mod angles;
 mod apply;
@@ -120,5 +120,5 @@ fn dispatch(cli: Cli) -> miette::Result<()> {
 
 /// Prints why a command failed.
 pub fn complain(report: &miette::Report) {
-    say::failure(report);
+    print::failure(report);
 }

@@ -11,7 +11,7 @@ use miette::{IntoDiagnostic, WrapErr, miette};
 use serde::Serialize;
 
 use super::clips::NOTES;
-use super::say;
+use super::print;
 
 /// Writes a file whole or not at all.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> miette::Result<()> {
@@ -71,7 +71,7 @@ pub fn print_json(value: &impl Serialize) -> miette::Result<()> {
         object.insert("reading".into(), notes.into());
     }
     let text = serde_json::to_string_pretty(&value).into_diagnostic().wrap_err("cannot write JSON")?;
-    say::raw(&format!("{}\n", plain::json(&text)));
+    print::raw(&format!("{}\n", plain::json(&text)));
     Ok(())
 }
 

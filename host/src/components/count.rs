@@ -3,7 +3,7 @@
 use super::factor::{Factors, flat, unflat};
 use super::matrix::Motion;
 use super::sparse::{Sparse, Sparsity, sparse};
-use crate::reached::Reached;
+use crate::step_cache::StepCache;
 
 /// Numbers that are tried.
 const CANDIDATES: std::ops::RangeInclusive<usize> = 1..=12;
@@ -27,12 +27,12 @@ pub struct Choice {
 ///
 /// Every candidate is factorised at the wanted density and refitted, so that it is judged by what it would do.
 pub fn choose(motion: &Motion, sparsity: &Sparsity) -> (Choice, Sparse) {
-    choose_kept(motion, sparsity, &Reached::nothing())
+    choose_kept(motion, sparsity, &StepCache::nothing())
 }
 
 /// The same, going on from what an earlier run has reached.
-pub(super) fn choose_kept(motion: &Motion, sparsity: &Sparsity, reached: &Reached) -> (Choice, Sparse) {
-    let sparse = |count| kept(motion, count, sparsity, reached, "content");
+pub(super) fn choose_kept(motion: &Motion, sparsity: &Sparsity, cache: &StepCache) -> (Choice, Sparse) {
+    let sparse = |count| kept(motion, count, sparsity, cache, "content");
     let most = motion.channels().min(motion.frames());
     let mut tried: Vec<(usize, f64)> = Vec::new();
     let mut last: Option<(usize, Sparse)> = None;
@@ -71,8 +71,8 @@ pub(super) fn fits(motion: &Motion, count: &str, result: &[f64]) -> bool {
 }
 
 /// [`sparse`] of a motion of this name, or what an earlier run has found.
-pub(super) fn kept(motion: &Motion, count: usize, sparsity: &Sparsity, reached: &Reached, name: &str) -> Sparse {
-    let found = reached.always(&format!("{name} {count}"), || {
+pub(super) fn kept(motion: &Motion, count: usize, sparsity: &Sparsity, cache: &StepCache, name: &str) -> Sparse {
+    let found = cache.always(&format!("{name} {count}"), || {
         let Sparse { factors, history } = sparse(motion.values.as_ref(), count, sparsity);
         [&[factors.weights.ncols() as f64], &flat(&factors.weights)[..], &flat(&factors.components), &history].concat()
     });

@@ -5,7 +5,7 @@
 //! | `matrix` | a clip as a standardised matrix |
 //! | `factor` | `M ~ W C`: the penalised objective and its exact block updates |
 //! | `gather`, [`pca()`] | two starts: joints gathered into components, principal components (also the baseline) |
-//! | `prune`, `refit`, `small` | fewer joints for the same error; least squares on a support; its small systems |
+//! | `prune`, `refit`, `cholesky` | fewer joints for the same error; least squares on a support; its small systems |
 //! | [`sparse()`] | the sparse factorisation as a whole |
 //! | `count` | how many components |
 //! | `objective`, `learn` | what style learning minimises, with its gradient; Adam from seeded noise |
@@ -15,6 +15,7 @@
 //! A matrix holds coordinates times their levers: see [`Motion`]. Its groups, *joint groups* here, are rows of coordinates: a ball's
 //! three, or up to three servos.
 
+mod cholesky;
 mod count;
 mod evaluate;
 mod factor;
@@ -28,7 +29,6 @@ mod pca;
 mod play;
 mod prune;
 mod refit;
-mod small;
 mod sparse;
 mod train;
 

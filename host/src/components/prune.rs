@@ -2,9 +2,9 @@
 
 use faer::MatRef;
 
+use super::cholesky::Cholesky;
 use super::factor::{Factors, column, column_mut, product};
 use super::refit::{Fit, Scatter};
-use super::small::Cholesky;
 use crate::vector::{Work, dot, vectorised};
 
 /// Groups that leave at once, as a share of those that are left.

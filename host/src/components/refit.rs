@@ -3,8 +3,8 @@
 use faer::linalg::solvers::Solve;
 use faer::{Mat, MatRef, Side};
 
+use super::cholesky::Cholesky;
 use super::factor::{Factors, column, column_mut, groups, product};
-use super::small::Cholesky;
 use crate::vector::{Work, vectorised};
 
 /// Rounds of least squares for `C` and for `W` in turn.

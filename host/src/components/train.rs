@@ -17,8 +17,8 @@ use crate::align::{AlignError, Ends};
 use crate::clip::Clip;
 use crate::measure::{Degrees, Measurable, compare};
 use crate::pack::{PackFile, Provenance};
-use crate::reached::{Reached, Unreadable};
 use crate::rig::{HostFrame, MAX_JOINTS, Rig};
+use crate::step_cache::{StepCache, Unreadable};
 
 /// At a plausible strength the fastest joint is at most so many times faster than the fastest of the training clips.
 const SPEED_UP: f64 = 1.5;
@@ -129,17 +129,17 @@ pub fn train(
     name: &str,
     options: &TrainOptions,
 ) -> Result<Trained, TrainError> {
-    train_kept(rig, content, style, name, options, &Reached::nothing())
+    train_kept(rig, content, style, name, options, &StepCache::nothing())
 }
 
-/// The same; every factorisation and the learned components are kept in `reached`, and taken from there where they are known.
+/// The same; every factorisation and the learned components are kept in `cache`, and taken from there where they are known.
 pub fn train_kept(
     rig: &Rig,
     content: &Clip,
     style: &Clip,
     name: &str,
     options: &TrainOptions,
-    reached: &Reached,
+    cache: &StepCache,
 ) -> Result<Trained, TrainError> {
     check(options)?;
     let [poses, style_poses] = [content, style].map(|clip| rig.poses(clip));
@@ -151,27 +151,27 @@ pub fn train_kept(
             return Err(TrainError::Still { which });
         }
     }
-    reached.check(|name, result| match name.split_once(' ') {
+    cache.check(|name, result| match name.split_once(' ') {
         Some(("content", count)) => fits(&content, count, result),
         Some(("style", count)) => fits(&other, count, result),
         _ => result.iter().all(|x| x.is_finite()),
     })?;
     let most = content.channels().min(content.frames()).min(super::play::MAX_COMPONENTS);
     let (choice, own) = match options.count {
-        None => choose_kept(&content, &options.sparsity, reached),
+        None => choose_kept(&content, &options.sparsity, cache),
         Some(count) if count == 0 || count > most => return Err(TrainError::Count { found: count, most }),
         Some(count) => {
             let choice = Choice { count, reason: "as asked for".to_owned(), tried: Vec::new() };
-            (choice, kept(&content, count, &options.sparsity, reached, "content"))
+            (choice, kept(&content, count, &options.sparsity, cache, "content"))
         }
     };
-    let wanted = kept(&other, choice.count.min(other.frames()), &options.sparsity, reached, "style");
+    let wanted = kept(&other, choice.count.min(other.frames()), &options.sparsity, cache, "style");
     let shift: Vec<f64> = content.mean.iter().zip(&other.mean).map(|(a, b)| options.posture * (b - a)).collect();
     let objective = Objective::new(&own.factors, &wanted.factors, options.weights);
     let start = || start(&own.factors, &wanted.factors, options.optimiser.seed);
     let needed = 4 + content.channels() * choice.count;
-    reached.check(|name, result| !name.starts_with("learn") || result.len() >= needed)?;
-    let learned = learned(&objective, start, &options.optimiser, reached, "learn");
+    cache.check(|name, result| !name.starts_with("learn") || result.len() >= needed)?;
+    let learned = learned(&objective, start, &options.optimiser, cache, "learn");
     let mut model = ComponentsModel {
         style: name.to_owned(),
         frame_rate: FRAME_RATE,
@@ -220,10 +220,10 @@ fn learned(
     objective: &Objective,
     start: impl FnOnce() -> Mat<f64>,
     optimiser: &Optimiser,
-    reached: &Reached,
+    cache: &StepCache,
     name: &str,
 ) -> Learned {
-    let found = reached.always(name, || {
+    let found = cache.always(name, || {
         let Learned { components, history, terms } = learn(objective, start(), optimiser);
         let Terms { content, style, smooth } = terms;
         let head = [components.nrows() as f64, components.ncols() as f64, content, style, smooth];
@@ -248,13 +248,12 @@ pub struct TradeOff {
 }
 
 /// The trade-off curve of a trained pair over `weights`; every point starts from the same noise.
-pub fn trade_off(trained: &Trained, options: &TrainOptions, weights: &[f64], reached: &Reached) -> Vec<TradeOff> {
+pub fn trade_off(trained: &Trained, options: &TrainOptions, weights: &[f64], cache: &StepCache) -> Vec<TradeOff> {
     let (content, wanted) = (&trained.content.factors, &trained.style.factors);
     let point = |style: &f64| {
         let objective = Objective::new(content, wanted, Weights { style: *style, ..options.weights });
         let start = || start(content, wanted, options.optimiser.seed);
-        let learned =
-            learned(&objective, start, &options.optimiser, reached, &format!("learn with {style}")).components;
+        let learned = learned(&objective, start, &options.optimiser, cache, &format!("learn with {style}")).components;
         TradeOff {
             style_weight: *style,
             style_distance: style_distance(&wanted.components, &learned),

@@ -22,11 +22,11 @@ pub mod evaluate;
 pub mod features;
 pub mod keyframes;
 pub mod labels;
-pub mod made;
 mod model;
 pub mod motions;
 pub mod play;
 pub mod segment;
+pub mod synthetic;
 mod train;
 
 pub use compare::{CompareError, Distances, compare_motions};

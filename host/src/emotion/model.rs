@@ -216,12 +216,12 @@ fn untile(columns: usize, tiles: &[f32]) -> Vec<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::emotion::made;
+    use crate::emotion::synthetic;
     use crate::pack::PackFile;
 
     #[test]
     fn a_pack_gives_the_model_back_and_the_device_computes_its_network() {
-        let (model, rig) = made::model(2);
+        let (model, rig) = synthetic::model(2);
         let file = PackFile::from_bytes(&model.pack(&rig, &Provenance::default()));
         let pack = file.pack().unwrap();
         let back = EmotionModel::from_pack(&pack).unwrap();

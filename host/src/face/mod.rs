@@ -7,7 +7,7 @@
 //! | `cluster` | k-means over contours: how the head is turned |
 //! | `strength` | ranking functions: one for all, then one a cluster that may differ from it |
 //! | [`train()`], `model` | from a table to a pack |
-//! | `made` | faces for tests and the firmware workload |
+//! | `synthetic` | faces for tests and the firmware workload |
 //! | `evaluate` | reads every face through the device's code; pair accuracy, rank correlation |
 //! | [`photo`] | pictures from files, whole or refused |
 //! | [`edit()`], `warp/` | offsets for a change of strength; moves the landmarks of a picture |
@@ -16,11 +16,11 @@ mod cluster;
 mod edit;
 mod evaluate;
 pub mod landmarks;
-pub mod made;
 mod model;
 pub mod photo;
 mod shape;
 mod strength;
+pub mod synthetic;
 mod train;
 pub mod warp;
 

@@ -9,7 +9,7 @@
 //! | [`Curvature`] | what its Hessian needs of the samples |
 //! | [`mod@regress`], `hidden` | strength -> features: a few tanh units, the output layer eliminated |
 
-mod choose;
+mod cross_validate;
 mod curvature;
 mod hidden;
 pub mod pairs;
@@ -17,7 +17,7 @@ pub mod rank;
 pub mod regress;
 pub(crate) mod samples;
 
-pub use choose::{Choice, choose_cost};
+pub use cross_validate::{Choice, choose_cost};
 pub use curvature::Curvature;
 pub use pairs::{Pairs, pair_accuracy, spearman};
 pub use rank::{RankOptions, Ranked, rank, rank_with};

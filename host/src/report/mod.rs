@@ -4,17 +4,17 @@
 //! |---|---|
 //! | `page` | title, paragraphs, tables, charts, figures, as HTML |
 //! | `chart` | curves as SVG |
-//! | `figures` | stick figures of clips as SVG |
+//! | `stick_figures` | stick figures of clips as SVG |
 //! | `faces` | faces from their landmarks as SVG |
 //! | [`latency`] | what a frame costs on six cores |
 
 mod chart;
 mod faces;
-mod figures;
 pub mod latency;
 mod page;
+mod stick_figures;
 
 pub use chart::{Chart, Line};
 pub use faces::faces;
-pub use figures::figures;
 pub use page::{Report, Table};
+pub use stick_figures::stick_figures;

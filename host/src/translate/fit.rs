@@ -12,8 +12,8 @@ use super::features::{centred, columns, principal, segments, with_states};
 use super::identify;
 use super::model::{BankModel, TimingModel, TranslatorModel};
 use super::moments::{Base, Map, Moments, Shape, stack};
-use crate::reached::Reached;
 use crate::rig::Rig;
+use crate::step_cache::StepCache;
 
 /// Deviation below which a joint counts as still, m.
 const STILL: f64 = 0.01;
@@ -164,7 +164,7 @@ impl<'a> Problem<'a> {
 
     /// Cross-validated RMS joint distance of each candidate, m. Candidates that share their features share the work. `name` tells
     /// this validation from others of the same training.
-    pub fn validate(&self, candidates: &[Candidate], reached: &Reached, name: &str) -> Vec<f64> {
+    pub fn validate(&self, candidates: &[Candidate], cache: &StepCache, name: &str) -> Vec<f64> {
         let mut groups: Vec<(Option<usize>, Poles)> = Vec::new();
         for candidate in candidates {
             let group = (candidate.coordinates, candidate.poles);
@@ -200,7 +200,7 @@ impl<'a> Problem<'a> {
                     let weight = |c: usize| if self.is_travel(channels.start + c) { 0.0 } else { 1.0 };
                     members().map(|(_, candidate)| folds.error(candidate, states, &weight)).collect()
                 };
-                let errors = reached.always(&format!("{name} {coordinates:?} {poles:?} {unit:?}"), work);
+                let errors = cache.always(&format!("{name} {coordinates:?} {poles:?} {unit:?}"), work);
                 members().map(|(i, _)| i).zip(errors).collect()
             })
             .collect();

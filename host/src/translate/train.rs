@@ -15,8 +15,8 @@ use super::moments::Base;
 use super::simulate::simulate;
 use crate::align::{AlignError, Ends, Series, aligned_distance, aligned_path};
 use crate::pack::Baselines;
-use crate::reached::Reached;
 use crate::rig::{Locals, Rig};
+use crate::step_cache::StepCache;
 
 /// Which form to train.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -143,10 +143,10 @@ pub fn train(
     options: &TrainOptions,
     progress: &(dyn Fn(Stage) + Sync),
 ) -> Result<Trained, TrainError> {
-    train_kept(rig, pairs, style, fps, options, progress, &Reached::nothing())
+    train_kept(rig, pairs, style, fps, options, progress, &StepCache::nothing())
 }
 
-/// The same; what is compared (alignments, candidates, forms) is kept in `reached`, and taken from there where it is known.
+/// The same; what is compared (alignments, candidates, forms) is kept in `cache`, and taken from there where it is known.
 pub fn train_kept(
     rig: &Rig,
     pairs: &[TrainPair],
@@ -154,7 +154,7 @@ pub fn train_kept(
     fps: f64,
     options: &TrainOptions,
     progress: &(dyn Fn(Stage) + Sync),
-    reached: &Reached,
+    cache: &StepCache,
 ) -> Result<Trained, TrainError> {
     if pairs.is_empty() {
         return Err(TrainError::NoPairs);
@@ -167,7 +167,7 @@ pub fn train_kept(
         .par_iter()
         .map(|way| {
             let mut made = None;
-            let error = reached.number(&format!("align {way:?}"), || {
+            let error = cache.number(&format!("align {way:?}"), || {
                 let (error, sequences) = align(*way)?;
                 made = Some(sequences);
                 Ok(error)
@@ -191,12 +191,12 @@ pub fn train_kept(
     let copies: Vec<Sequence> = mirror.iter().flat_map(|mirror| sequences.iter().map(|s| s.mirrored(mirror))).collect();
     let mirrored = mirror.is_some()
         && options.mirror.unwrap_or_else(|| {
-            let error = |copies, name| Problem::new(rig, &sequences, copies, fps).validate(&[QUICK], reached, name)[0];
+            let error = |copies, name| Problem::new(rig, &sequences, copies, fps).validate(&[QUICK], cache, name)[0];
             error(&copies, "mirrored") < error(&[], "not mirrored")
         });
     let problem = Problem::new(rig, &sequences, if mirrored { &copies } else { &[] }, fps);
     let grid = grid(rig, options);
-    let errors = problem.validate(&grid, reached, "grid");
+    let errors = problem.validate(&grid, cache, "grid");
     let best_of = |keep: &dyn Fn(&Candidate) -> bool| {
         let kept = grid.iter().zip(&errors).filter(|(candidate, error)| keep(candidate) && error.is_finite());
         kept.min_by(|a, b| a.1.total_cmp(b.1)).map(|(candidate, _)| *candidate)
@@ -208,14 +208,14 @@ pub fn train_kept(
     let mut forms = Vec::new();
     for candidate in per_joint.into_iter().chain(whole_body) {
         let error = || held_out_error(rig, &problem, &candidate, pairs, ends);
-        forms.push((candidate, 100.0 * reached.number(&format!("form {candidate:?}"), error)?));
+        forms.push((candidate, 100.0 * cache.number(&format!("form {candidate:?}"), error)?));
     }
     // The plain affine map, on the plain time warp, must be beaten clearly to be replaced.
     let plain = if alignment == Alignment::InStep { sequences.clone() } else { plain_sequences(rig, pairs)? };
     let plain = Problem::new(rig, &plain, &[], fps);
     if options.form == FormChoice::Auto {
         let error = || held_out_error(rig, &plain, &AFFINE, pairs, ends);
-        forms.push((AFFINE, 100.0 * reached.number("affine", error)?));
+        forms.push((AFFINE, 100.0 * cache.number("affine", error)?));
     }
     let handicap = |candidate: &Candidate| if candidate.coordinates.is_some() { PER_JOINT } else { 1.0 };
     let judged = |(candidate, error): &(Candidate, f64)| handicap(candidate) * error;

@@ -117,7 +117,7 @@ fn longest(model: &HostEmotion) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::emotion::{EmotionModel, made};
+    use crate::emotion::{EmotionModel, synthetic};
     use crate::models;
     use crate::pack::{PackFile, Provenance};
     use crate::view::{View, WASM, page};
@@ -129,7 +129,7 @@ mod tests {
 
     #[test]
     fn sliders_start_in_the_middle_and_a_change_is_seen_in_the_digest() {
-        let (model, rig) = made::model(2);
+        let (model, rig) = synthetic::model(2);
         let data = data(&of(&model, &rig)).unwrap();
         let sliders: Vec<_> = data.attributes.iter().map(|a| (a.name.as_str(), a.range, a.start)).collect();
         assert_eq!(sliders, [("weary", [0.0, 1.0], 0.5), ("swaying", [-1.0, 1.0], 0.0)]);
@@ -140,7 +140,7 @@ mod tests {
 
     #[test]
     fn a_motion_that_ends_is_shown_at_its_longest_and_changed_while_it_moves() {
-        let (mut model, rig) = made::model(1);
+        let (mut model, rig) = synthetic::model(1);
         model.cycle = false;
         let view = of(&model, &rig);
         let data = data(&view).unwrap();
@@ -155,7 +155,7 @@ mod tests {
 
     #[test]
     fn an_emotion_pack_is_a_page_without_a_clip() {
-        let (model, rig) = made::model(1);
+        let (model, rig) = synthetic::model(1);
         let shown = View { emotions: vec![of(&model, &rig)], ..View::default() };
         let html = page("title", "made", &shown, WASM).unwrap();
         assert!(html.contains(r#""emotions":[{"name":"made""#) && html.contains(r#""clips":[]"#));

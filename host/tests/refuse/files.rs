@@ -133,7 +133,7 @@ pub fn make(folder: &Path) {
     for name in ["weary.kin", "mechanics.kin"] {
         std::fs::copy(models.join(name), folder.join(name)).unwrap();
     }
-    let (moods, rig) = kinesic_host::emotion::made::sized(2, [4, 6, 3]);
+    let (moods, rig) = kinesic_host::emotion::synthetic::sized(2, [4, 6, 3]);
     write("moods.kin", &moods.pack(&rig, &kinesic_host::pack::Provenance::default()));
     let pack = std::fs::read(folder.join("weary.kin")).unwrap();
     let spoiled = |at: usize, byte: u8| {

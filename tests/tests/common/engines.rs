@@ -10,7 +10,7 @@ use kinesic::model::{Kind, MechanicsMeta, ModelMeta};
 use kinesic::{Components, Emotion, LimitState, Limiter, Pipeline, PipelineState, Pose, Translator};
 use kinesic_host::clip::JointMap;
 use kinesic_host::components::{ComponentsModel, Factors};
-use kinesic_host::emotion::made;
+use kinesic_host::emotion::synthetic;
 use kinesic_host::gait::{self, Manner};
 use kinesic_host::limit::{JointLimit, LimitsModel};
 use kinesic_host::pack::{PackFile, PackWriter, Provenance};
@@ -220,13 +220,13 @@ pub fn components() -> Vec<u8> {
 pub fn emotion() -> Vec<u8> {
     const FPS: f64 = 480.0;
     let rig = rig();
-    let moments = [Manner::NEUTRAL, Manner::WEARY].map(|manner| -> Vec<made::Moment> {
+    let moments = [Manner::NEUTRAL, Manner::WEARY].map(|manner| -> Vec<synthetic::Moment> {
         let seconds = 1.0 / manner.cadence;
         let poses = rig.poses(&gait::walk(&manner, seconds + 0.1, FPS, 0.0, 1));
         let frame = |key: usize| (seconds * FPS * key as f64 / (KEYS - 1) as f64).round() as usize;
         (0..KEYS).map(|key| (frame(key) as f64 / FPS, poses[frame(key)])).collect()
     });
-    made::over(&rig, &moments, [COUNT, 3]).pack(&rig, &Provenance::default())
+    synthetic::over(&rig, &moments, [COUNT, 3]).pack(&rig, &Provenance::default())
 }
 
 pub fn limits_pack() -> Vec<u8> {

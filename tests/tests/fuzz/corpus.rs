@@ -70,7 +70,7 @@ fn packs() -> Vec<(&'static str, Vec<u8>)> {
     let trained =
         components::train(&rig, &short(&Manner::NEUTRAL, 1), &short(&Manner::WEARY, 2), "seed", &options).unwrap();
     packs.push(("components.kin", trained.model.pack(&rig, &origin)));
-    let (model, rig) = kinesic_host::emotion::made::sized(1, [3, 2, 2]);
+    let (model, rig) = kinesic_host::emotion::synthetic::sized(1, [3, 2, 2]);
     packs.push(("emotion.kin", model.pack(&rig, &origin)));
     let mut limits = LimitsModel::free("seed", 60.0, &rig, 6.0, 60.0);
     let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);

@@ -6,8 +6,8 @@ use std::path::Path;
 use kinesic_host::align::{Search, Series, Settings, align};
 use serde_json::{Value, json};
 
-use kinesic_benches::made;
 use kinesic_benches::measure::{peak_mib, timed, write};
+use kinesic_benches::synthetic;
 
 const FRAMES: f64 = 1400.0;
 const CHANNELS: usize = 60;
@@ -15,10 +15,10 @@ const ITERATIONS: usize = 10;
 
 pub fn run(folder: &Path, scale: f64) -> Result<Value, Box<dyn Error>> {
     let frames = (FRAMES * scale).round() as usize;
-    let channels = made::channels(CHANNELS, 1);
-    let u = made::rows(&channels, frames, |t| t, 2);
+    let channels = synthetic::channels(CHANNELS, 1);
+    let u = synthetic::rows(&channels, frames, |t| t, 2);
     let later = |t: f64| t + 12.0 * (t / 180.0).sin() + 5.0 * (t / 47.0).sin();
-    let mut v = made::rows(&channels, frames, later, 3);
+    let mut v = synthetic::rows(&channels, frames, later, 3);
     for (k, v) in v.iter_mut().enumerate() {
         let channel = (k % CHANNELS) as f64;
         *v = *v * (1.0 + 0.3 * (0.7 * channel).sin()) + 0.3 * channel.cos();

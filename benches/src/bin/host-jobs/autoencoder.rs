@@ -8,8 +8,8 @@ use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
 use serde_json::{Value, json};
 
-use kinesic_benches::made;
 use kinesic_benches::measure::{peak_mib, timed, write};
+use kinesic_benches::synthetic;
 
 const SAMPLES: f64 = 33_000.0;
 const TESTED: usize = 3_000;
@@ -20,7 +20,7 @@ const RATE: f32 = 1e-3;
 
 pub fn run(folder: &Path, scale: f64) -> Result<Value, Box<dyn Error>> {
     let samples = (SAMPLES * scale).round() as usize;
-    let rows = made::rows(&made::channels(WIDTH, 1), samples + TESTED, |t| t, 2);
+    let rows = synthetic::rows(&synthetic::channels(WIDTH, 1), samples + TESTED, |t| t, 2);
     let rows: Vec<f32> = rows.iter().map(|x| *x as f32).collect();
     let (data, test) = rows.split_at(samples * WIDTH);
     let mut random = ChaCha8Rng::seed_from_u64(3);

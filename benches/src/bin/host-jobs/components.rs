@@ -3,8 +3,8 @@
 use std::error::Error;
 
 use faer::{Mat, MatRef};
-use kinesic_benches::made;
 use kinesic_benches::measure::{peak_mib, timed};
+use kinesic_benches::synthetic;
 use kinesic_host::components::{Objective, Optimiser, Sparsity, Weights, learn, noise, sparse};
 use serde_json::{Value, json};
 
@@ -34,6 +34,6 @@ pub fn learn_style(scale: f64) -> Result<Value, Box<dyn Error>> {
 
 fn motion(scale: f64, seed: u64) -> Mat<f64> {
     let frames = (FRAMES * scale).round() as usize;
-    let rows = made::rows(&made::channels(CHANNELS, seed), frames, |t| t, seed + 1);
-    made::centred(MatRef::from_row_major_slice(&rows, frames, CHANNELS))
+    let rows = synthetic::rows(&synthetic::channels(CHANNELS, seed), frames, |t| t, seed + 1);
+    synthetic::centred(MatRef::from_row_major_slice(&rows, frames, CHANNELS))
 }

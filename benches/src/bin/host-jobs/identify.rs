@@ -13,8 +13,8 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use serde_json::{Value, json};
 
-use kinesic_benches::made;
 use kinesic_benches::measure::{peak_mib, timed, write};
+use kinesic_benches::synthetic;
 
 const ORDER: usize = 40;
 const FRAMES: f64 = 6000.0;
@@ -44,8 +44,8 @@ pub fn made(folder: &Path, scale: f64) -> Result<Value, Box<dyn Error>> {
     };
     let output = Mat::from_fn(3, 2 * POLES, |_, _| uniform(1.0));
     let total = 2 * frames;
-    let channels = made::channels(3, 6);
-    let rows = made::rows(&channels, total, |t| t, 7);
+    let channels = synthetic::channels(3, 6);
+    let rows = synthetic::rows(&channels, total, |t| t, 7);
     let u = Mat::from_fn(total, 3, |t, c| rows[3 * t + c] + uniform(0.5));
     let clean = system.states_before(&u) * output.transpose();
     let deviation = (clean.squared_norm_l2() / (3 * total) as f64).sqrt();

@@ -1,7 +1,7 @@
 //! Made motions whose strength is known: 13 keyframes of 20 joints' positions and velocities.
 
 use faer::{Mat, MatRef};
-use kinesic_benches::made::centred;
+use kinesic_benches::synthetic::centred;
 use kinesic_host::components::pca;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};

@@ -8,8 +8,8 @@ use kinesic_host::components::pca;
 use serde_json::{Value, json};
 
 use crate::motions::{self, COMPONENTS, KEYFRAMES};
-use kinesic_benches::made::{self, centred};
 use kinesic_benches::measure::{peak_mib, timed, write};
+use kinesic_benches::synthetic::{self, centred};
 
 /// The keyframes of 1,000 motions, 120 numbers each, on 40 components: the first step of emotion strength.
 pub fn keyframes(folder: &Path, scale: f64) -> Result<Value, Box<dyn Error>> {
@@ -20,7 +20,7 @@ pub fn keyframes(folder: &Path, scale: f64) -> Result<Value, Box<dyn Error>> {
 /// A clip of 198 channels on 40 components.
 pub fn clip(folder: &Path, scale: f64) -> Result<Value, Box<dyn Error>> {
     let frames = (1400.0 * scale).round() as usize;
-    run(folder, &made::rows(&made::channels(198, 1), frames, |t| t, 2), 198, frames)
+    run(folder, &synthetic::rows(&synthetic::channels(198, 1), frames, |t| t, 2), 198, frames)
 }
 
 fn run(folder: &Path, values: &[f64], columns: usize, rows: usize) -> Result<Value, Box<dyn Error>> {

@@ -9,7 +9,7 @@ use kinesic_host::components::{
 use kinesic_host::measure::Distance;
 use kinesic_host::pack::{Metric, PackFile};
 use kinesic_host::prepare::Source;
-use kinesic_host::reached::Reached;
+use kinesic_host::step_cache::StepCache;
 use miette::IntoDiagnostic;
 use serde::Serialize;
 
@@ -122,10 +122,10 @@ pub fn run(args: &Args) -> miette::Result<()> {
     // The same options and the same clips, read in the same way: the same training.
     let deciding = [format!("components {options:?} {}", args.curve), format!("{prints:?}"), args.reading.deciding()?];
     let mut checkpoint = args.resume.checkpoint(&args.out, &deciding)?;
-    let reached = Reached::new(&mut checkpoint).into_diagnostic()?;
-    let trained = train_kept(&rig, &content, &style, &name, &options, &reached).into_diagnostic()?;
-    let curve = if args.curve { trade_off(&trained, &options, &CURVE, &reached) } else { Vec::new() };
-    drop(reached);
+    let cache = StepCache::new(&mut checkpoint).into_diagnostic()?;
+    let trained = train_kept(&rig, &content, &style, &name, &options, &cache).into_diagnostic()?;
+    let curve = if args.curve { trade_off(&trained, &options, &CURVE, &cache) } else { Vec::new() };
+    drop(cache);
 
     let mut provenance = session.provenance(prints, vec![trained.choice.reason.clone()]);
     provenance.metrics = recorded(&trained);

@@ -7,7 +7,7 @@ use kinesic_host::clip::Clip;
 use kinesic_host::measure::turns::Turns;
 use kinesic_host::pack::{Metric, PackFile};
 use kinesic_host::prepare::{Source, common_rate};
-use kinesic_host::reached::Reached;
+use kinesic_host::step_cache::StepCache;
 use kinesic_host::translate::{
     AFFINE, Alignment, Base, Candidate, FormChoice, NamedPair, Poles, Report, Stage, TrainOptions, TrainPair, Trained,
     evaluate, plausible, train_kept,
@@ -156,7 +156,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     // The same options, the same clips in the same order, read in the same way: the same training.
     let deciding = [format!("translate {:?} {fps}", args.options()), format!("{prints:?}"), args.reading.deciding()?];
     let mut checkpoint = args.resume.checkpoint(&args.out, &deciding)?;
-    let reached = Reached::new(&mut checkpoint).into_diagnostic()?;
+    let cache = StepCache::new(&mut checkpoint).into_diagnostic()?;
     let progress = |stage| {
         session.say(match stage {
             Stage::Align => "aligning the clips",
@@ -164,9 +164,9 @@ pub fn run(args: &Args) -> miette::Result<()> {
             Stage::Fit => "fitting",
         });
     };
-    let trained = train_kept(&rig, &pairs, &style, fps, &args.options(), &progress, &reached);
+    let trained = train_kept(&rig, &pairs, &style, fps, &args.options(), &progress, &cache);
     let mut trained = trained.into_diagnostic()?;
-    drop(reached);
+    drop(cache);
 
     let named: Vec<NamedPair> = pairs
         .iter()

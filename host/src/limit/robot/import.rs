@@ -6,7 +6,7 @@ use kinesic::model::LoadError;
 use kinesic::rig::JointKind;
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::stand::{rig_joint, world, zero};
+use super::zero_pose::{rig_joint, world, zero};
 use super::{Entry, MapKind, Mimic, Motion, Robot, RobotError, RobotMap, UrdfJoint};
 use crate::clip::Canonical;
 use crate::clip::map::nearest;

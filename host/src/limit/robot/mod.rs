@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `urdf` | [`Robot`]: the joints of a URDF, as a tree |
 //! | `map` | [`RobotMap`]: robot joints of each skeleton joint, and what a URDF does not say |
-//! | `stand` | how the skeleton stands when all of the robot's angles are zero |
+//! | `zero_pose` | how the skeleton stands when all of the robot's angles are zero |
 //! | `import` | both together: [`import()`] |
 //!
 //! # The geometry
@@ -17,8 +17,8 @@
 mod error;
 mod import;
 mod map;
-mod stand;
 mod urdf;
+mod zero_pose;
 
 pub use error::RobotError;
 pub use import::{Import, Rates, import};

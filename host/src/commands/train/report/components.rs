@@ -3,7 +3,7 @@
 use kinesic_host::clip::Clip;
 use kinesic_host::components::{FRAME_RATE, Report, Settings, ToClip, TradeOff, Trained, play_stored};
 use kinesic_host::pack::PackFile;
-use kinesic_host::report::{Chart, Line, Report as Page, Table, figures};
+use kinesic_host::report::{Chart, Line, Report as Page, Table, stick_figures};
 use kinesic_host::rig::Rig;
 use miette::IntoDiagnostic;
 
@@ -28,7 +28,7 @@ pub fn page(
     let result = rig.clip(&result, 1.0 / FRAME_RATE);
     page.heading("What it does");
     page.figure(
-        &figures(&[("content", content), ("style", style), ("result", &result)]),
+        &stick_figures(&[("content", content), ("style", style), ("result", &result)]),
         "Eight moments from the first to the last frame of each clip; left limbs blue, right ones orange.",
     );
     page.text(&format!("{}.", trained.choice.reason));

@@ -2,7 +2,7 @@
 
 use kinesic_host::mechanics::{Distances, Figures, NamedClip, Trained, decouple};
 use kinesic_host::pack::PackFile;
-use kinesic_host::report::{Chart, Line, Report as Page, Table, figures};
+use kinesic_host::report::{Chart, Line, Report as Page, Table, stick_figures};
 use kinesic_host::rig::Rig;
 use miette::IntoDiagnostic;
 
@@ -25,7 +25,7 @@ pub fn page(
     let parts = decouple(&file.pack().into_diagnostic()?, &rig.poses(&shown.clip)).into_diagnostic()?;
     let mechanics: Vec<_> = parts.iter().map(|parts| parts.mechanics).collect();
     page.heading("What it does").figure(
-        &figures(&[("observed", &shown.clip), ("mechanics", &rig.clip(&mechanics, shown.clip.frame_time))]),
+        &stick_figures(&[("observed", &shown.clip), ("mechanics", &rig.clip(&mechanics, shown.clip.frame_time))]),
         &format!(
             "Eight moments of {}, a clip without expression: the mechanics should look like it. Left limbs blue, right ones orange.",
             shown.name

@@ -2,7 +2,7 @@
 
 use kinesic_host::clip::Clip;
 use kinesic_host::pack::PackFile;
-use kinesic_host::report::{Chart, Line, Report as Page, Table, figures};
+use kinesic_host::report::{Chart, Line, Report as Page, Table, stick_figures};
 use kinesic_host::rig::Rig;
 use kinesic_host::translate::{Errors, NamedPair, Report, Settings, Trained, play};
 use miette::IntoDiagnostic;
@@ -21,7 +21,7 @@ pub fn page(trained: &Trained, report: &Report, first: &NamedPair, rig: &Rig, fi
         play(&file.pack().into_diagnostic()?, rig, &rig.poses(source), &Settings::default()).into_diagnostic()?;
     let styled = rig.clip(&poses, source.frame_time);
     page.heading("What it does").figure(
-        &figures(&[("source", source), ("translated", &styled), ("target", target)]),
+        &stick_figures(&[("source", source), ("translated", &styled), ("target", target)]),
         "Eight moments from the first to the last frame of each clip of the first training pair; left limbs blue, right ones \
          orange. Clips of different length do not line up.",
     );

@@ -10,12 +10,12 @@ use kinesic_host::plain;
 use miette::{MietteDiagnostic, Report};
 
 macro_rules! println {
-    () => { $crate::commands::say::line(format_args!("")) };
-    ($($text:tt)*) => { $crate::commands::say::line(format_args!($($text)*)) };
+    () => { $crate::commands::print::line(format_args!("")) };
+    ($($text:tt)*) => { $crate::commands::print::line(format_args!($($text)*)) };
 }
 
 macro_rules! eprintln {
-    ($($text:tt)*) => { $crate::commands::say::aside(format_args!($($text)*)) };
+    ($($text:tt)*) => { $crate::commands::print::aside(format_args!($($text)*)) };
 }
 
 /// A line on standard output. Commands print when their work is done, so a reader that has gone away is no failure; any other

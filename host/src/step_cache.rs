@@ -7,7 +7,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use crate::checkpoint::Keep;
 
 /// Results of steps that are done. Steps may run on many threads; a step's result must depend on its name and the training alone.
-pub struct Reached<'k> {
+pub struct StepCache<'k> {
     inner: Mutex<Inner<'k>>,
 }
 
@@ -21,14 +21,14 @@ struct Inner<'k> {
 #[error("the checkpoint holds no steps of this training: remove it to train from the beginning")]
 pub struct Unreadable;
 
-impl Reached<'static> {
+impl StepCache<'static> {
     /// Nothing yet, and nothing is kept.
     pub fn nothing() -> Self {
         Self { inner: Mutex::new(Inner { done: BTreeMap::new(), keep: None }) }
     }
 }
 
-impl<'k> Reached<'k> {
+impl<'k> StepCache<'k> {
     /// What an earlier run has kept in `keep`, where this one keeps more.
     pub fn new(keep: &'k mut (dyn Keep + Send)) -> Result<Self, Unreadable> {
         let done = match keep.earlier() {
@@ -95,15 +95,15 @@ mod tests {
     fn a_step_is_done_once_and_a_failure_is_not_kept() {
         let mut memory = Memory::default();
         {
-            let reached = Reached::new(&mut memory).unwrap();
-            assert_eq!(reached.always("a", || vec![1.0, f64::NAN])[0], 1.0);
-            assert_eq!(reached.number("b", || Err::<f64, _>("no")), Err("no"));
-            assert_eq!(reached.number("b", || Ok::<_, ()>(0.1 + 0.2)), Ok(0.1 + 0.2));
+            let cache = StepCache::new(&mut memory).unwrap();
+            assert_eq!(cache.always("a", || vec![1.0, f64::NAN])[0], 1.0);
+            assert_eq!(cache.number("b", || Err::<f64, _>("no")), Err("no"));
+            assert_eq!(cache.number("b", || Ok::<_, ()>(0.1 + 0.2)), Ok(0.1 + 0.2));
         }
-        let reached = Reached::new(&mut memory).unwrap();
-        assert!(reached.always("a", || unreachable!())[1].is_nan());
-        assert_eq!(reached.number::<()>("b", || unreachable!()), Ok(0.1 + 0.2));
+        let cache = StepCache::new(&mut memory).unwrap();
+        assert!(cache.always("a", || unreachable!())[1].is_nan());
+        assert_eq!(cache.number::<()>("b", || unreachable!()), Ok(0.1 + 0.2));
         let mut other = Memory(Some(vec![200, 1, 7]));
-        assert!(Reached::new(&mut other).is_err());
+        assert!(StepCache::new(&mut other).is_err());
     }
 }

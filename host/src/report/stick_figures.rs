@@ -15,7 +15,7 @@ const COLUMNS: usize = 8;
 
 /// An SVG drawing of clips, with their names. Left limbs are blue, right ones orange; every figure stands in the middle of its
 /// cell on the line of the ground.
-pub fn figures(rows: &[(&str, &Clip)]) -> String {
+pub fn stick_figures(rows: &[(&str, &Clip)]) -> String {
     let heights: Vec<f64> = rows.iter().map(|(_, clip)| 40.0 + SCALE * tallest(clip)).collect();
     let (width, height) = (CELL * COLUMNS as f64, heights.iter().sum::<f64>());
     let mut svg = format!(
@@ -81,7 +81,7 @@ mod tests {
     #[test]
     fn every_bone_is_drawn() {
         let clip = walk(&Manner::NEUTRAL, 1.0, 30.0, 0.0, 1);
-        let svg = super::figures(&[("a < b", &clip), ("again", &clip)]);
+        let svg = super::stick_figures(&[("a < b", &clip), ("again", &clip)]);
         assert_eq!(svg.matches("stroke-linecap").count(), 2 * super::COLUMNS * (clip.skeleton.len() - 1));
         assert!(svg.contains("a &lt; b") && svg.contains("#0072b2") && svg.contains("#d55e00"));
     }
