@@ -5,7 +5,7 @@
 //! | room | does |
 //! |---|---|
 //! | [`data`] | reads `targets.toml`, `cycles.toml` and `budgets.toml` |
-//! | [`made`], [`workload`] | makes packs and input frames, runs the same frames on the host |
+//! | [`synthetic`], [`workload`] | makes packs and input frames, runs the same frames on the host |
 //! | [`toolchain`] | finds a compiler that builds for the target, or says what to install |
 //! | [`build`] | builds the images and the emulator's plugin |
 //! | [`elf`] | sizes, symbols and what must not be linked |

@@ -1,4 +1,4 @@
-//! Every engine, 100 frames. A new engine gets a function and a line in [`step_all`].
+//! Every engine, 100 frames. [`live`] has every engine that restyles; one that can do more gets a function and a line in [`step_all`].
 
 use kinesic::emotion::{Emotion, EmotionState, Place};
 use kinesic::engine::live::{self, Live};

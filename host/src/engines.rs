@@ -1,5 +1,5 @@
-//! What the host knows of every engine: one registry, one arm an engine. `inspect`, `apply`, `view`, `export --rust` and the golden packs
-//! ask it, and no engine by name.
+//! What the host knows of every engine: one registry, one arm per engine. `inspect`, `apply`, `view`, `export --rust` and the golden packs ask
+//! it. Only a learned clock and a stored motion belong to one engine each, and `apply` asks for these by name.
 
 use kinesic::engine::Controls;
 use kinesic::mechanics::Modulation;
@@ -23,7 +23,7 @@ pub type Play = fn(&Pack, &Rig, &[Pose<MAX_JOINTS>], Controls<MAX_ROWS>) -> Resu
 /// How an engine plays clips.
 #[derive(Clone, Copy, Debug)]
 pub struct Player {
-    /// Of several, the least plays; as in `wasm/src/engine.rs`.
+    /// Of several engines the one with the least order plays; `kinesic::engine::live::keep_first` has the same order for the page.
     pub order: u8,
     /// Strengths at which it stays plausible.
     pub plausible: [f32; 2],
@@ -47,7 +47,7 @@ pub struct Source {
     pub constants: Vec<Constant>,
 }
 
-/// An engine's metadata, and what the host does by them. A new engine implements it in its own folder.
+/// An engine's metadata, and what the host does with it. Those of a new engine may stand in its own folder.
 pub trait Known {
     /// Name of the engine.
     fn name(&self) -> &'static str;

@@ -9,7 +9,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use hostile::Hostile;
-use kinesic::model::{ModelMeta, Number};
+use kinesic::model::{Field, ModelMeta};
 use kinesic_host::clip::JointMap;
 use kinesic_host::embed::rust_module;
 use kinesic_host::emotion::evaluate::Scorer;
@@ -53,10 +53,10 @@ const COUNTS: [u32; 8] = [0, 1, 2, 3, 64, 1 << 20, 1 << 31, u32::MAX];
 fn numbers(pack: &mut Hostile) -> [usize; 2] {
     let mut found = [1, 0];
     for model in &mut pack.models {
-        model.numbers(&mut |number| match number {
-            Number::Count(_) => found[1] += 1,
-            Number::Strength(_) => found[0] += 2,
-            Number::Size(_) | Number::Gain(_) | Number::Own(_) => found[0] += 1,
+        model.fields(&mut |field| match field {
+            Field::Count(_) => found[1] += 1,
+            Field::Strength(_) => found[0] += 2,
+            Field::Size(_) | Field::Gain(_) | Field::Own(_) => found[0] += 1,
         });
     }
     found
@@ -69,22 +69,22 @@ fn put(pack: &mut Hostile, (at, to): (usize, f32), (count_at, count_to): (usize,
         pack.frame_rate = to;
     }
     for model in &mut pack.models {
-        model.numbers(&mut |number| {
+        model.fields(&mut |field| {
             let mut number_at = |x: &mut f32| {
                 if here == at {
                     *x = to;
                 }
                 here += 1;
             };
-            match number {
-                Number::Count(count) => {
+            match field {
+                Field::Count(count) => {
                     if count_here == count_at {
                         *count = count_to;
                     }
                     count_here += 1;
                 }
-                Number::Strength(range) => range.iter_mut().for_each(number_at),
-                Number::Size(x) | Number::Gain(x) | Number::Own(x) => number_at(x),
+                Field::Strength(range) => range.iter_mut().for_each(number_at),
+                Field::Size(x) | Field::Gain(x) | Field::Own(x) => number_at(x),
             }
         });
     }

@@ -27,18 +27,13 @@ pub(super) struct Coordinate {
 pub(super) fn reach(room: f32, change: f32) -> f32 {
     if room <= change {
         // No whole step.
-        return most(room, 0.0);
+        return if room > 0.0 { room } else { 0.0 };
     }
     let whole = (0.5 * (sqrt(1.0 + 8.0 * (room / change)) - 1.0)) as u32 as f32;
     room / (whole + 1.0) + 0.5 * whole * change
 }
 
-/// The greater of two numbers. Neither is NaN, so that one comparison will do.
-pub(super) fn most(a: f32, b: f32) -> f32 {
-    if a < b { b } else { a }
-}
-
-/// `x`, within bounds of which none is NaN.
+/// `x`, within bounds. None of the three is NaN, so that two comparisons do; `f32::clamp` and `min` take more where there is no instruction.
 pub(super) fn within(x: f32, lower: f32, upper: f32) -> f32 {
     let x = if x < lower { lower } else { x };
     if x > upper { upper } else { x }

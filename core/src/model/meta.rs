@@ -123,9 +123,9 @@ impl<'a> ModelMeta<'a> {
     }
 }
 
-/// A number of a model's metadata, and what is plausible for it.
+/// An f32 or u32 of a model's metadata, and what is plausible for it.
 #[derive(Debug)]
-pub enum Number<'m> {
+pub enum Field<'m> {
     /// How many of something; [`Pack::load`](super::Pack::load) refuses more than 1,048,576.
     Count(&'m mut u32),
     /// Least and greatest strength, within -1000 to 1000.
@@ -139,9 +139,9 @@ pub enum Number<'m> {
 }
 
 impl ModelMeta<'_> {
-    /// Every number in it, in order. Loading checks them by this list, and tests change them by it.
-    pub fn numbers(&mut self, visit: &mut dyn FnMut(Number)) {
-        use Number::{Count, Gain, Own, Size, Strength};
+    /// Every f32 and u32 in it, in order. Loading checks them by this list, and tests change them by it.
+    pub fn fields(&mut self, visit: &mut dyn FnMut(Field)) {
+        use Field::{Count, Gain, Own, Size, Strength};
         match self {
             Self::Translator(meta) => {
                 [&mut meta.blocks, &mut meta.drives].into_iter().for_each(|count| visit(Count(count)));

@@ -5,7 +5,7 @@
 
 use core::ops::RangeInclusive;
 
-use super::{LoadError, Metadata, ModelMeta, Number, Pack};
+use super::{Field, LoadError, Metadata, ModelMeta, Pack};
 
 /// Frames a second.
 const FRAME_RATE: RangeInclusive<f32> = 1.0..=1000.0;
@@ -72,22 +72,22 @@ pub(super) fn check_tensors(pack: &Pack) -> Result<(), LoadError> {
 /// The first number of a model that is out of its range.
 fn model(meta: &ModelMeta) -> Option<&'static str> {
     let (mut meta, mut found) = (*meta, None);
-    meta.numbers(&mut |number| {
-        let (sound, field) = match number {
-            Number::Count(count) => (*count <= COUNT, "shape of a model, expected at most 1048576 of anything"),
-            Number::Strength([low, high]) => (
+    meta.fields(&mut |field| {
+        let (sound, said) = match field {
+            Field::Count(count) => (*count <= COUNT, "shape of a model, expected at most 1048576 of anything"),
+            Field::Strength([low, high]) => (
                 *low >= -STRENGTH && *low <= *high && *high <= STRENGTH,
                 "range of strengths, expected low to high within -1000 to 1000",
             ),
-            Number::Size(size) => (SIZE.contains(&*size), "size of the body, expected 0.01 to 1000 m"),
-            Number::Gain(gain) => {
+            Field::Size(size) => (SIZE.contains(&*size), "size of the body, expected 0.01 to 1000 m"),
+            Field::Gain(gain) => {
                 ((-GAIN..=GAIN).contains(&*gain), "gain of the activity index, expected -1000 to 1000")
             }
             // Such as a limiter's rates, which it checks against the frame rate.
-            Number::Own(_) => (true, ""),
+            Field::Own(_) => (true, ""),
         };
         if !sound && found.is_none() {
-            found = Some(field);
+            found = Some(said);
         }
     });
     found

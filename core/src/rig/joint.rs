@@ -4,7 +4,6 @@ use core::f32::consts::{PI, TAU};
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-use super::rotation::{exp, log};
 use crate::kernel::{quadrant_angle, sin_cos, sqrt};
 
 /// Which coordinates a joint has.
@@ -57,9 +56,9 @@ const SMALL: f32 = 1e-6;
 /// An angle keeps to the turn that it is in up to so far from the middle of its range: at half a turn it would flicker.
 const KEEP: f32 = 1.2 * PI;
 
-/// The three axes of a joint, in its reference.
+/// The three axes of a chain, in its reference.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Axes {
+pub(super) struct Axes {
     axes: [Vector3<f32>; 3],
     /// A left-handed triple is taken as a right-handed one whose third axis, and third coordinate, is turned round.
     hand: f32,
@@ -72,61 +71,44 @@ impl Axes {
         Self { axes: [a, b, c * hand], hand }
     }
 
-    fn components(&self, q: &UnitQuaternion<f32>) -> [f32; 4] {
-        let [a, b, c] = &self.axes;
-        let v = q.imag();
-        [q.w, v.dot(a), v.dot(b), v.dot(c)]
+    /// The angles of the rotation `q` from the reference. Of all the values that mean the same rotation the one nearest to `middle`
+    /// counts, but the turn of `last` is kept for a while. Where a rotation leaves an angle open (gimbal lock) it stays as in `last`.
+    /// What the axes cannot do is left out. Cost: up to 120 multiply-adds, ten roots.
+    pub fn angles(&self, q: &UnitQuaternion<f32>, last: [f32; 3], middle: [f32; 3]) -> [f32; 3] {
+        let ([last0, last1, last2], [middle0, middle1, middle2]) = (last, middle);
+        let ([a, b, c], v) = (&self.axes, q.imag());
+        let [a, b, c] = chain([q.w, v.dot(a), v.dot(b), v.dot(c)], [last0, last1, self.hand * last2]);
+        let turned = |[a, b, c]: [f32; 3]| {
+            [near(a, last0, middle0), near(b, last1, middle1), near(self.hand * c, last2, middle2)]
+        };
+        let first = turned([a, b, c]);
+        // The other way to the same rotation.
+        let second = turned([a + PI, PI - b, c + PI]);
+        let cost = |x: &[f32; 3]| x.iter().zip(last).map(|(x, last)| (x - last).abs()).sum::<f32>();
+        if cost(&second) < cost(&first) { second } else { first }
     }
 
-    fn rotation(&self, [w, x, y, z]: [f32; 4]) -> UnitQuaternion<f32> {
+    /// The rotation from the reference with these angles. Cost: 70 multiply-adds.
+    pub fn rotation(&self, [a, b, c]: [f32; 3]) -> UnitQuaternion<f32> {
+        let (s, t) = sin_cos(0.5 * a);
+        let ((sb, cb), (sc, cc)) = (sin_cos(0.5 * b), sin_cos(0.5 * self.hand * c));
+        let [w, x, y, z] = [cb * cc, sb * sc, sb * cc, cb * sc];
+        let [w, x, y, z] = [t * w - s * x, t * x + s * w, t * y - s * z, t * z + s * y];
         let [a, b, c] = &self.axes;
         UnitQuaternion::new_unchecked(Quaternion::from_parts(w, a * x + b * y + c * z))
     }
+}
 
-    /// Coordinates of the rotation `q` from the reference. Of all the values that mean the same rotation the one nearest to `middle`
-    /// counts, but the turn of `last` is kept for a while. Where a rotation leaves a coordinate open (gimbal lock) it stays as in
-    /// `last`. What the axes of a hinge or of a chain cannot do is left out. Cost: up to 120 multiply-adds, ten roots; a ball 20.
-    pub fn coordinates(&self, kind: JointKind, q: &UnitQuaternion<f32>, last: [f32; 3], middle: [f32; 3]) -> [f32; 3] {
-        let [last0, last1, last2] = last;
-        let [middle0, middle1, middle2] = middle;
-        match kind {
-            JointKind::Fixed | JointKind::Slider => last,
-            JointKind::Ball => ball(log(q), last),
-            JointKind::Hinge => {
-                let [axis, ..] = &self.axes;
-                [near(twist(q.w, q.imag().dot(axis)).unwrap_or(last0), last0, middle0), last1, last2]
-            }
-            JointKind::Chain => {
-                let [a, b, c] = chain(self.components(q), [last0, last1, self.hand * last2]);
-                let turned = |[a, b, c]: [f32; 3]| {
-                    [near(a, last0, middle0), near(b, last1, middle1), near(self.hand * c, last2, middle2)]
-                };
-                let first = turned([a, b, c]);
-                // The other way to the same rotation.
-                let second = turned([a + PI, PI - b, c + PI]);
-                let cost = |x: &[f32; 3]| x.iter().zip(last).map(|(x, last)| (x - last).abs()).sum::<f32>();
-                if cost(&second) < cost(&first) { second } else { first }
-            }
-        }
-    }
+/// The angle of a hinge: the turn about `axis` that is nearest to `q`, chosen among equal ones as [`Axes::angles`] does. Cost: 30
+/// multiply-adds, three roots.
+pub(super) fn hinge(axis: &[f32; 3], q: &UnitQuaternion<f32>, last: f32, middle: f32) -> f32 {
+    near(twist(q.w, q.imag().dot(&Vector3::from(*axis))).unwrap_or(last), last, middle)
+}
 
-    /// The rotation from the reference with these coordinates. Cost: up to 70 multiply-adds, a root.
-    pub fn compose(&self, kind: JointKind, [a, b, c]: [f32; 3]) -> UnitQuaternion<f32> {
-        match kind {
-            JointKind::Fixed | JointKind::Slider => UnitQuaternion::identity(),
-            JointKind::Ball => exp(Vector3::new(a, b, c)),
-            JointKind::Hinge => {
-                let ([axis, ..], (s, t)) = (&self.axes, sin_cos(0.5 * a));
-                UnitQuaternion::new_unchecked(Quaternion::from_parts(t, axis * s))
-            }
-            JointKind::Chain => {
-                let (s, t) = sin_cos(0.5 * a);
-                let ((sb, cb), (sc, cc)) = (sin_cos(0.5 * b), sin_cos(0.5 * self.hand * c));
-                let [w, x, y, z] = [cb * cc, sb * sc, sb * cc, cb * sc];
-                self.rotation([t * w - s * x, t * x + s * w, t * y - s * z, t * z + s * y])
-            }
-        }
-    }
+/// The turn by an angle about a hinge's axis. Cost: 20 multiply-adds.
+pub(super) fn hinged(axis: &[f32; 3], angle: f32) -> UnitQuaternion<f32> {
+    let (sin, cos) = sin_cos(0.5 * angle);
+    UnitQuaternion::new_unchecked(Quaternion::from_parts(cos, Vector3::from(*axis) * sin))
 }
 
 /// The rotation vector `v` of the shorter turn, or the other one that means the same rotation if `last` is nearer to that.
@@ -188,6 +170,7 @@ fn chain([w, x, y, z]: [f32; 4], [last0, _, last2]: [f32; 3]) -> [f32; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rig::{exp, log};
 
     const RIGHT: [[f32; 3]; 3] = [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]];
     const LEFT: [[f32; 3]; 3] = [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [-1.0, 0.0, 0.0]];
@@ -213,8 +196,8 @@ mod tests {
             for angles in grid() {
                 let [a, b, c] = [0, 1, 2].map(|i| turn(axes[i], angles[i]));
                 let q = a * b * c;
-                assert!(same(&joint.compose(JointKind::Chain, angles), &q), "{angles:?}");
-                let found = joint.coordinates(JointKind::Chain, &q, angles, [0.0; 3]);
+                assert!(same(&joint.rotation(angles), &q), "{angles:?}");
+                let found = joint.angles(&q, angles, [0.0; 3]);
                 assert!(found.iter().zip(angles).all(|(x, y)| (x - y).abs() < 2e-5), "{angles:?} {found:?}");
             }
         }
@@ -226,8 +209,8 @@ mod tests {
         let mut last = [0.3, 1.2, -0.4];
         for step in 0..120 {
             let angles = [0.3, 1.2 + step as f32 * 0.01, -0.4];
-            let q = joint.compose(JointKind::Chain, angles);
-            let found = joint.coordinates(JointKind::Chain, &q, last, [0.0; 3]);
+            let q = joint.rotation(angles);
+            let found = joint.angles(&q, last, [0.0; 3]);
             let gimbal = (angles[1] - 0.5 * PI).abs() < 2e-3;
             assert!(gimbal || found.iter().zip(angles).all(|(x, y)| (x - y).abs() < 2e-3), "{angles:?} {found:?}");
             last = found;
@@ -236,40 +219,38 @@ mod tests {
 
     #[test]
     fn a_ball_is_its_rotation_vector_and_passes_half_a_turn() {
-        let joint = Axes::new(&RIGHT);
         let mut last = [0.0; 3];
         for step in 0..=360 {
             let angle = step as f32 * 0.01;
             let v = [0.48 * angle, -0.6 * angle, 0.64 * angle];
-            let q = joint.compose(JointKind::Ball, v);
-            let found = joint.coordinates(JointKind::Ball, &q, last, [0.0; 3]);
+            let found = ball(log(&exp(Vector3::from(v))), last);
             assert!(found.iter().zip(v).all(|(x, y)| (x - y).abs() < 1e-4), "{angle}: {v:?} {found:?}");
             last = found;
         }
         // Beyond 1.2 half turns the shorter turn is taken again, so that a somersault leaves nothing behind.
-        let q = joint.compose(JointKind::Ball, [3.9, 0.0, 0.0]);
-        let [x, ..] = joint.coordinates(JointKind::Ball, &q, [3.7, 0.0, 0.0], [0.0; 3]);
+        let [x, ..] = ball(log(&exp(Vector3::new(3.9, 0.0, 0.0))), [3.7, 0.0, 0.0]);
         assert!((x - (3.9 - TAU)).abs() < 1e-4, "{x}");
     }
 
     #[test]
     fn a_hinge_takes_the_part_about_its_axis() {
-        let joint = Axes::new(&RIGHT);
+        let axis = &RIGHT[0];
         let swing = turn([0.0, 0.0, 1.0], 0.4) * turn([1.0, 0.0, 0.0], -0.2);
         for step in -300..300 {
             let angle = step as f32 * 0.01;
             let q = turn([0.0, 1.0, 0.0], angle);
-            let [found, ..] = joint.coordinates(JointKind::Hinge, &q, [0.0; 3], [0.0; 3]);
+            let found = hinge(axis, &q, 0.0, 0.0);
             assert!((found - angle).abs() < 1e-5);
+            assert!(same(&hinged(axis, angle), &q));
             // A range of nearly a turn, from 0 on.
-            let [found, ..] = joint.coordinates(JointKind::Hinge, &q, [0.0; 3], [PI; 3]);
+            let found = hinge(axis, &q, 0.0, PI);
             let wrapped = if angle < PI - KEEP { angle + TAU } else { angle };
             assert!((found - wrapped).abs() < 1e-5, "{angle}: {found}");
         }
-        let [found, ..] = joint.coordinates(JointKind::Hinge, &swing, [0.0; 3], [0.0; 3]);
+        let found = hinge(axis, &swing, 0.0, 0.0);
         assert!(found.abs() < 0.1, "{found}");
         // A half turn about another axis says nothing of this one.
         let across = turn([1.0, 0.0, 0.0], PI);
-        assert_eq!(joint.coordinates(JointKind::Hinge, &across, [0.7, 0.0, 0.0], [0.0; 3])[0], 0.7);
+        assert_eq!(hinge(axis, &across, 0.7, 0.0), 0.7);
     }
 }

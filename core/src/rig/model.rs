@@ -2,7 +2,7 @@
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-use super::joint::{Axes, JointKind, ball};
+use super::joint::{Axes, JointKind, ball, hinge, hinged};
 use super::rotation::{exp, log, renormalised};
 use crate::model::{LoadError, Pack};
 
@@ -153,18 +153,27 @@ impl Joint<'_> {
         let turn = match self.kind {
             JointKind::Fixed | JointKind::Slider => return self.reference(),
             JointKind::Ball => exp(Vector3::from(coordinates)),
-            kind => Axes::new(self.axes).compose(kind, coordinates),
+            JointKind::Hinge => {
+                let ([axis, ..], [angle, ..]) = (self.axes, coordinates);
+                hinged(axis, angle)
+            }
+            JointKind::Chain => Axes::new(self.axes).rotation(coordinates),
         };
         renormalised((self.reference() * turn).into_inner())
     }
 
-    /// The coordinates of a local rotation: see [`Axes::coordinates`].
+    /// The coordinates of a local rotation. What the joint cannot do is left out. Of all the values that mean the same rotation the one
+    /// nearest to the middle of its range counts, but the turn of `last` is kept for a while.
     pub fn coordinates(&self, local: &UnitQuaternion<f32>, last: [f32; 3]) -> [f32; 3] {
         let from = || renormalised((self.reference().inverse() * local).into_inner());
         match self.kind {
             JointKind::Fixed | JointKind::Slider => last,
             JointKind::Ball => ball(log(&from()), last),
-            kind => Axes::new(self.axes).coordinates(kind, &from(), last, *self.middle),
+            JointKind::Hinge => {
+                let ([axis, ..], [last, ..], [middle, ..]) = (self.axes, last, self.middle);
+                [hinge(axis, &from(), last, *middle), 0.0, 0.0]
+            }
+            JointKind::Chain => Axes::new(self.axes).angles(&from(), last, *self.middle),
         }
     }
 

@@ -18,7 +18,7 @@ pub(super) enum Bank<'a> {
         project: Tiled<'a>,
         /// `B`, `states x drives`.
         input: Tiled<'a>,
-        /// `[C D]`, `3 rows x (states + drives)`, m.
+        /// `[C D]`, `3 rows x (states + drives)`, rad or m.
         output: Tiled<'a>,
     },
 }

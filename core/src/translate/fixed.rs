@@ -13,7 +13,7 @@ const LARGEST_BIAS: u32 = 1 << 29;
 /// A direct term in fixed point: 3 x 3, row-major, and the shift of its sums.
 type FixedDirect = [i16; 10];
 
-/// From the normalised input to heading-local positions and the clock.
+/// From the normalised input to styled coordinates and the clock.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fixed<'a> {
     bias: &'a [[i32; 3]],

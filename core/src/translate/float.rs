@@ -4,12 +4,12 @@ use super::bank::Bank;
 use crate::kernel;
 use crate::model::{Form, LoadError, Pack, TranslatorMeta};
 
-/// From the normalised input to heading-local positions and the clock.
+/// From the normalised input to styled coordinates and the clock.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Float<'a> {
-    /// Output at zero input and state, m.
+    /// Output at zero input and state, rad or m.
     bias: &'a [[f32; 3]],
-    /// Direct term from a joint to itself, row-major 3 x 3, m.
+    /// Direct term from a row of coordinates to itself, row-major 3 x 3, rad or m.
     direct: &'a [[f32; 9]],
     timing: TimingHead<'a>,
     bank: Bank<'a>,

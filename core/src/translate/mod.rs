@@ -1,8 +1,8 @@
 //! Style translation: linear time-invariant state-space models that turn one manner of moving into another.
 //!
-//! For every joint, heading-local positions go in and come out (Dong, Aloba, Anthony, Jain 2018; Hsu, Pulli, Popović 2005):
+//! [Coordinates](crate::rig) go in and come out. The papers have positions (Dong, Aloba, Anthony, Jain 2018; Hsu, Pulli, Popović 2005):
 //! `x' = A x + B u`, `y = C x + D u`, with `A` in real modal form. Two forms share one runtime: *per joint*, a bank of models
-//! with 3 inputs and 3 outputs; *whole body*, one model driven by a few principal coordinates of all joints.
+//! with 3 inputs and 3 outputs, one per row of a frame; *whole body*, one model driven by a few principal coordinates of all rows.
 
 mod bank;
 mod fixed;

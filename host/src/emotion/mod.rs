@@ -14,7 +14,7 @@
 //! | [`compare_motions`] | played motions against recorded ones: centimetres and degrees |
 //! | [`EmotionModel`] | what training makes, as a pack and back |
 //! | [`play`] | playback through the device's code |
-//! | [`made`] | a made model for tests and firmware workloads |
+//! | [`synthetic`] | a made-up model for tests and firmware workloads |
 
 mod compare;
 pub mod coordinates;
