@@ -4,9 +4,10 @@ use std::sync::OnceLock;
 
 use kinesic_host::clip::JointMap;
 use kinesic_host::gait;
-use kinesic_host::limit::robot::{Rates, Robot, RobotMap, import};
+use kinesic_host::limit::onto_body::{Rates, RobotMap, import};
 use kinesic_host::limit::{HostLimiter, Table};
 use kinesic_host::rig::Rig;
+use kinesic_host::robot::Robot;
 
 /// The map of an input that brings none.
 const MAP: &str = "acceleration = 20\n[joints]\nl_shoulder = [\"pitch\", \"roll\", \"yaw\"]\nl_elbow = \"elbow\"\n";

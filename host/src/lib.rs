@@ -27,6 +27,7 @@ pub mod quantise;
 pub mod report;
 pub mod retarget;
 pub mod rig;
+pub mod robot;
 pub mod step_cache;
 pub mod translate;
 mod vector;

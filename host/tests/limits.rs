@@ -7,10 +7,11 @@ use kinesic::rig::JointKind;
 use kinesic::{Pipeline, PipelineState, Pose};
 use kinesic_host::clip::{JointMap, WriteOptions};
 use kinesic_host::gait::{self, Manner, walk};
-use kinesic_host::limit::robot::{Import, Rates, Robot, RobotError, RobotMap, import};
+use kinesic_host::limit::onto_body::{Import, Rates, RobotMap, import};
 use kinesic_host::limit::{HostLimiter, JointLimit, LimitsModel};
 use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_host::rig::{MAX_JOINTS, MAX_ROWS, Rig};
+use kinesic_host::robot::{Robot, RobotError};
 use kinesic_host::translate::{FormChoice, HostTranslator, TrainOptions, TrainPair, train};
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 

@@ -3,12 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use kinesic_host::files;
-use kinesic_host::limit::robot::{Import, Rates, Robot, RobotError, RobotMap, import};
+use kinesic_host::limit::onto_body::{Import, Rates, RobotMap, import};
 use kinesic_host::limit::{LimitsModel, Table};
 use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_host::plain;
 use kinesic_host::prepare::Source;
 use kinesic_host::rig::Rig;
+use kinesic_host::robot::{Robot, RobotError};
 use miette::{IntoDiagnostic, WrapErr, miette};
 use serde::Serialize;
 

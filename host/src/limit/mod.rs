@@ -6,11 +6,11 @@
 //! | `rows` | [`Tables`]: the limits of every coordinate, as the device reads them |
 //! | `onto` | limits in the coordinates of a pack that has engines |
 //! | `table` | [`Table`]: for people and other programs |
-//! | `robot` | limits from a robot's URDF |
+//! | `onto_body` | limits of a body from a robot's description |
 
 mod joint;
 mod onto;
-pub mod robot;
+pub mod onto_body;
 mod rows;
 mod table;
 

@@ -71,7 +71,7 @@ fn described(joint: &JointCoordinates) -> String {
     let round = |x: &f32| (f64::from(*x) * 1e4).round() / 1e4 + 0.0;
     let list =
         |values: &[f32]| format!("[{}]", values.iter().map(|x| round(x).to_string()).collect::<Vec<_>>().join(", "));
-    let mut text = super::robot::kind_name(joint.kind).to_owned();
+    let mut text = super::onto_body::kind_name(joint.kind).to_owned();
     if axes(joint.kind) > 0 {
         text += " about ";
         text += &joint.axes[..axes(joint.kind)].iter().map(|axis| list(axis)).collect::<Vec<_>>().join(", ");

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::robot::kind_name;
+use super::onto_body::kind_name;
 use super::{HeightLimit, JointLimit, LimitsModel, onto};
 
 /// All limits by name.

@@ -2,9 +2,10 @@
 
 use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
 
-use super::{Robot, RobotMap};
+use super::RobotMap;
 use crate::clip::Canonical;
 use crate::rig::Rig;
+use crate::robot::Robot;
 
 /// Robot joints nearer than this to each other show no direction, m.
 const SHORTEST: f64 = 0.02;

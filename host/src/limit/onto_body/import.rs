@@ -7,11 +7,12 @@ use kinesic::rig::JointKind;
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::zero_pose::{rig_joint, world, zero};
-use super::{Entry, MapKind, Mimic, Motion, Robot, RobotError, RobotMap, UrdfJoint};
+use super::{Entry, MapKind, RobotMap};
 use crate::clip::Canonical;
 use crate::clip::map::nearest;
 use crate::limit::{HeightLimit, JointLimit, LimitsModel};
 use crate::rig::{JointCoordinates, Rig};
+use crate::robot::{Mimic, Motion, Robot, RobotError, RobotJoint};
 
 /// Axes of a chain may be this far from a right angle (cosine; half a degree): a `rpy` of 1.57 is meant to be a quarter turn.
 const SQUARE: f64 = 1e-2;
@@ -177,7 +178,7 @@ fn robot_joints(robot: &Robot, rig: &Rig, entries: &[Option<&Entry>]) -> Result<
                 );
             };
             let found = &robot.joints[at];
-            if let Motion::Fixed | Motion::Other(_) = found.motion {
+            if let Motion::Fixed | Motion::Prismatic | Motion::Other(_) = found.motion {
                 let kind = &found.kind;
                 let what =
                     format!("'{name}' (line {}) is of the type '{kind}', expected revolute or continuous", found.line);
@@ -231,8 +232,8 @@ fn no_acceleration(place: &str) -> RobotError {
 }
 
 /// The joints that follow one, also by way of others, each as `multiplier x + offset` of its angle `x`.
-fn followers<'r>(robot: &'r Robot, leader: &UrdfJoint) -> Vec<(&'r UrdfJoint, Mimic)> {
-    let mut found: Vec<(&UrdfJoint, Mimic)> = Vec::new();
+fn followers<'r>(robot: &'r Robot, leader: &RobotJoint) -> Vec<(&'r RobotJoint, Mimic)> {
+    let mut found: Vec<(&RobotJoint, Mimic)> = Vec::new();
     let mut open = vec![Mimic { joint: leader.name.clone(), multiplier: 1.0, offset: 0.0 }];
     while let Some(up) = open.pop() {
         for follower in &robot.joints {
@@ -315,7 +316,7 @@ fn rows(
 
 /// A joint's bounds, no more than a turn apart.
 fn bounds(
-    joint: &UrdfJoint,
+    joint: &RobotJoint,
     lower: Option<f64>,
     upper: Option<f64>,
     place: &str,

@@ -14,7 +14,7 @@ pub struct RobotError {
 }
 
 impl RobotError {
-    pub(super) fn new(place: impl Into<String>, what: impl Into<String>, help: impl Into<String>) -> Self {
+    pub(crate) fn new(place: impl Into<String>, what: impl Into<String>, help: impl Into<String>) -> Self {
         Self { place: place.into(), what: what.into(), help: help.into() }
     }
 

@@ -1,8 +1,7 @@
-//! Limits from a robot's URDF: which of its joints are which joint of the skeleton says a map.
+//! Limits of a body's joints from a robot's description ([`crate::robot`]): a map says which of its joints are which of the skeleton's.
 //!
 //! | file | holds |
 //! |---|---|
-//! | `urdf` | [`Robot`]: the joints of a URDF, as a tree |
 //! | `map` | [`RobotMap`]: robot joints of each skeleton joint, and what a URDF does not say |
 //! | `zero_pose` | how the skeleton stands when all of the robot's angles are zero |
 //! | `import` | both together: [`import()`] |
@@ -14,16 +13,12 @@
 //! `P` its parent's, the joint's local rotation is `P^-1 exp(w1 a1) exp(w2 a2) G = (P^-1 G) exp(G^-1 w1 a1) exp(G^-1 w2 a2)`: a chain
 //! with `reference = P^-1 G` and axes `G^-1 w`.
 
-mod error;
 mod import;
 mod map;
-mod urdf;
 mod zero_pose;
 
-pub use error::RobotError;
 pub use import::{Import, Rates, import};
 pub use map::{Entry, MapKind, RobotMap};
-pub use urdf::{Mimic, Motion, Robot, UrdfJoint};
 
 use kinesic::rig::JointKind;
 

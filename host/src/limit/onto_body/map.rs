@@ -3,8 +3,8 @@
 use nalgebra::Vector3;
 use toml::{Table, Value};
 
-use super::RobotError;
 use crate::clip::map::nearest;
+use crate::robot::RobotError;
 use kinesic::model::LimitsMeta;
 
 /// Which coordinates a map asks for.
@@ -104,14 +104,14 @@ impl RobotMap {
     /// Reads the text of a map.
     ///
     /// ```
-    /// let map = kinesic_host::limit::robot::RobotMap::parse(r#"
+    /// let map = kinesic_host::limit::onto_body::RobotMap::parse(r#"
     ///     acceleration = 20.0
     ///     [joints]
     ///     l_elbow = "left_elbow"
     ///     l_shoulder = { urdf = ["left_shoulder_pitch", "left_shoulder_roll"], acceleration = 15.0 }
     /// "#)?;
     /// assert_eq!(map.entries.len(), 2);
-    /// # Ok::<(), kinesic_host::limit::robot::RobotError>(())
+    /// # Ok::<(), kinesic_host::robot::RobotError>(())
     /// ```
     pub fn parse(text: &str) -> Result<Self, RobotError> {
         let table: Table = text

@@ -1,4 +1,4 @@
-//! The part of a URDF that limits need: joints, where they are, what they may do.
+//! Reads a URDF: joints, where they are, what they may do.
 //!
 //! <http://wiki.ros.org/urdf/XML/joint>: metres, radians; an origin is `Rz(yaw) Ry(pitch) Rx(roll)`, the axis is in the joint's frame and
 //! (1, 0, 0) unless given.
@@ -8,69 +8,7 @@ use std::collections::{HashMap, HashSet};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use roxmltree::{Document, Node};
 
-use super::RobotError;
-
-/// How a joint moves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Motion {
-    /// A hinge with bounds.
-    Revolute,
-    /// A hinge without.
-    Continuous,
-    /// Along an axis, in a plane or anyhow: no rotation that a limit could be made of.
-    Other(&'static str),
-    /// Not at all.
-    Fixed,
-}
-
-/// `multiplier x + offset` of another joint's angle `x`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Mimic {
-    /// The joint that leads.
-    pub joint: String,
-    /// Radians a radian.
-    pub multiplier: f64,
-    /// Radians.
-    pub offset: f64,
-}
-
-/// One joint of a robot.
-#[derive(Clone, Debug, PartialEq)]
-pub struct UrdfJoint {
-    /// Name as the file spells it.
-    pub name: String,
-    /// Line of the file.
-    pub line: u32,
-    /// How it moves.
-    pub motion: Motion,
-    /// Its type as the file spells it.
-    pub kind: String,
-    /// The joint that moves the link on which this one sits; none on the root link.
-    pub parent: Option<usize>,
-    /// Its frame in that joint's.
-    pub origin: Isometry3<f64>,
-    /// Axis in its frame, length one.
-    pub axis: Vector3<f64>,
-    /// Bounds, rad, where they are given; the tighter of `limit` and `safety_controller`.
-    pub lower: Option<f64>,
-    /// See `lower`.
-    pub upper: Option<f64>,
-    /// Largest speed, rad/s, where it is given.
-    pub velocity: Option<f64>,
-    /// Whose angle it follows.
-    pub mimic: Option<Mimic>,
-    /// What was made of odd values, one sentence each.
-    pub notes: Vec<String>,
-}
-
-/// A robot's tree of joints, in the file's order.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Robot {
-    /// Name of the robot.
-    pub name: String,
-    /// Its joints.
-    pub joints: Vec<UrdfJoint>,
-}
+use super::{Mimic, Motion, Robot, RobotError, RobotJoint};
 
 impl Robot {
     /// Reads the text of a URDF.
@@ -103,7 +41,7 @@ impl Robot {
         let elements = |name: &'static str| root.children().filter(move |node| node.has_tag_name(name));
         let links: HashSet<&str> = elements("link").filter_map(|node| node.attribute("name")).collect();
         let mut lines: HashMap<String, u32> = HashMap::new();
-        let mut joints: Vec<(UrdfJoint, [&str; 2])> = Vec::new();
+        let mut joints: Vec<(RobotJoint, [&str; 2])> = Vec::new();
         for node in elements("joint") {
             let joint = read(node, line(node))?;
             let place = format!("line {}, joint '{}'", joint.line, joint.name);
@@ -134,30 +72,6 @@ impl Robot {
         }
         let name = root.attribute("name").unwrap_or("robot").to_owned();
         Ok(Self { name, joints: tree(joints)? })
-    }
-
-    /// Index of the joint with this name.
-    pub fn find(&self, name: &str) -> Option<usize> {
-        self.joints.iter().position(|joint| joint.name == name)
-    }
-
-    /// The joint and those that carry it, outwards in.
-    pub fn chain(&self, joint: usize) -> impl Iterator<Item = usize> + '_ {
-        std::iter::successors(Some(joint), |at| self.joints[*at].parent)
-    }
-
-    /// The frame of every joint in the root link's, all angles zero.
-    pub fn frames(&self) -> Vec<Isometry3<f64>> {
-        let mut frames: Vec<Option<Isometry3<f64>>> = vec![None; self.joints.len()];
-        for joint in 0..self.joints.len() {
-            // Outwards from the nearest joint whose frame is known.
-            let open: Vec<usize> = self.chain(joint).take_while(|at| frames[*at].is_none()).collect();
-            for at in open.into_iter().rev() {
-                let carrier = self.joints[at].parent.and_then(|parent| frames[parent]);
-                frames[at] = Some(carrier.unwrap_or_else(Isometry3::identity) * self.joints[at].origin);
-            }
-        }
-        frames.into_iter().flatten().collect()
     }
 }
 
@@ -207,7 +121,7 @@ fn child<'a, 'b>(node: Node<'a, 'b>, name: &str) -> Option<Node<'a, 'b>> {
 }
 
 /// A joint but for its place in the tree.
-fn read(node: Node, line: u32) -> Result<UrdfJoint, RobotError> {
+fn read(node: Node, line: u32) -> Result<RobotJoint, RobotError> {
     let name = node.attribute("name").filter(|name| !name.is_empty()).ok_or_else(|| {
         RobotError::new(format!("line {line}"), "found a <joint> without a name, expected name=\"...\"", "name it")
     })?;
@@ -237,7 +151,7 @@ fn read(node: Node, line: u32) -> Result<UrdfJoint, RobotError> {
         Some("revolute") => Motion::Revolute,
         Some("continuous") => Motion::Continuous,
         Some("fixed") => Motion::Fixed,
-        Some("prismatic") => Motion::Other("prismatic"),
+        Some("prismatic") => Motion::Prismatic,
         Some("planar") => Motion::Other("planar"),
         Some("floating") => Motion::Other("floating"),
         // Refused where a map names it.
@@ -294,11 +208,12 @@ fn read(node: Node, line: u32) -> Result<UrdfJoint, RobotError> {
             offset: number("mimic", "offset")?.unwrap_or(0.0),
         }),
     };
-    Ok(UrdfJoint {
+    Ok(RobotJoint {
         name: name.to_owned(),
         line,
         motion,
         kind: node.attribute("type").unwrap_or_default().to_owned(),
+        child: child(node, "child").and_then(|node| node.attribute("link")).unwrap_or_default().to_owned(),
         parent: None,
         origin: Isometry3::from_parts(
             Translation3::from(place_of),
@@ -314,7 +229,7 @@ fn read(node: Node, line: u32) -> Result<UrdfJoint, RobotError> {
 }
 
 /// Finds every joint's parent. Every link has one joint at most that moves it, and every way inwards ends at a root.
-fn tree(joints: Vec<(UrdfJoint, [&str; 2])>) -> Result<Vec<UrdfJoint>, RobotError> {
+fn tree(joints: Vec<(RobotJoint, [&str; 2])>) -> Result<Vec<RobotJoint>, RobotError> {
     let mut mover: HashMap<&str, usize> = HashMap::new();
     for (index, (joint, [_, child])) in joints.iter().enumerate() {
         if let Some(other) = mover.insert(child, index) {
@@ -340,5 +255,5 @@ fn tree(joints: Vec<(UrdfJoint, [&str; 2])>) -> Result<Vec<UrdfJoint>, RobotErro
             return Err(RobotError::new(place, what, "expected a tree with one root link; cut the loop open"));
         }
     }
-    Ok(joints.into_iter().zip(parents).map(|((joint, _), parent)| UrdfJoint { parent, ..joint }).collect())
+    Ok(joints.into_iter().zip(parents).map(|((joint, _), parent)| RobotJoint { parent, ..joint }).collect())
 }

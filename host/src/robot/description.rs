@@ -1,0 +1,142 @@
+//! A robot as its description gives it: joints in a tree.
+
+use std::collections::HashMap;
+
+use nalgebra::{Isometry3, UnitQuaternion, Vector3};
+
+/// Followers of followers: at most so many in a row.
+const LONGEST: usize = 32;
+
+/// How a joint moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Motion {
+    /// A hinge with bounds.
+    Revolute,
+    /// A hinge without.
+    Continuous,
+    /// A slider along its axis.
+    Prismatic,
+    /// In a plane or anyhow: no single coordinate.
+    Other(&'static str),
+    /// Not at all.
+    Fixed,
+}
+
+/// `multiplier x + offset` of another joint's angle `x`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mimic {
+    /// The joint that leads.
+    pub joint: String,
+    /// Radians a radian.
+    pub multiplier: f64,
+    /// Radians.
+    pub offset: f64,
+}
+
+/// One joint of a robot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RobotJoint {
+    /// Name as the file spells it.
+    pub name: String,
+    /// Line of the file.
+    pub line: u32,
+    /// How it moves.
+    pub motion: Motion,
+    /// Its type as the file spells it.
+    pub kind: String,
+    /// The link that it moves.
+    pub child: String,
+    /// The joint that moves the link on which this one sits; none on the root link.
+    pub parent: Option<usize>,
+    /// Its frame in that joint's.
+    pub origin: Isometry3<f64>,
+    /// Axis in its frame, length one.
+    pub axis: Vector3<f64>,
+    /// Bounds, rad or m, where they are given; the tighter of `limit` and `safety_controller`.
+    pub lower: Option<f64>,
+    /// See `lower`.
+    pub upper: Option<f64>,
+    /// Largest speed, rad/s or m/s, where it is given.
+    pub velocity: Option<f64>,
+    /// Whose angle it follows.
+    pub mimic: Option<Mimic>,
+    /// What was made of odd values, one sentence each.
+    pub notes: Vec<String>,
+}
+
+/// A robot's tree of joints, in the file's order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Robot {
+    /// Name of the robot.
+    pub name: String,
+    /// Its joints.
+    pub joints: Vec<RobotJoint>,
+}
+
+impl Robot {
+    /// Index of the joint with this name.
+    pub fn find(&self, name: &str) -> Option<usize> {
+        self.joints.iter().position(|joint| joint.name == name)
+    }
+
+    /// The joint and those that carry it, outwards in.
+    pub fn chain(&self, joint: usize) -> impl Iterator<Item = usize> + '_ {
+        std::iter::successors(Some(joint), |at| self.joints[*at].parent)
+    }
+
+    /// The frame of every joint in the root link's, all values zero.
+    pub fn frames(&self) -> Vec<Isometry3<f64>> {
+        self.placed(&|_| 0.0)
+    }
+
+    /// Forward kinematics: the frame of the link that each joint moves, in the root link's. `value` gives a joint's angle, rad, or length,
+    /// m. Followers are not followed: see [`followed`](Self::followed).
+    pub fn placed(&self, value: &dyn Fn(usize) -> f64) -> Vec<Isometry3<f64>> {
+        let mut frames: Vec<Option<Isometry3<f64>>> = vec![None; self.joints.len()];
+        for joint in 0..self.joints.len() {
+            // Outwards from the nearest joint whose frame is known.
+            let open: Vec<usize> = self.chain(joint).take_while(|at| frames[*at].is_none()).collect();
+            for at in open.into_iter().rev() {
+                let carrier = self.joints[at].parent.and_then(|parent| frames[parent]);
+                let moved = self.joints[at].moved(value(at));
+                frames[at] = Some(carrier.unwrap_or_else(Isometry3::identity) * self.joints[at].origin * moved);
+            }
+        }
+        frames.into_iter().flatten().collect()
+    }
+
+    /// The value of every joint: `own` of those that lead, `multiplier x + offset` of those that follow one, also by way of others.
+    pub fn followed(&self, own: &[f64]) -> Vec<f64> {
+        let mut values = own.to_vec();
+        let index: HashMap<&str, usize> =
+            self.joints.iter().zip(0..).map(|(joint, at)| (joint.name.as_str(), at)).collect();
+        let led = |joint: &RobotJoint| {
+            joint.mimic.as_ref().and_then(|mimic| Some((mimic.clone(), *index.get(mimic.joint.as_str())?)))
+        };
+        let leaders: Vec<Option<(Mimic, usize)>> = self.joints.iter().map(led).collect();
+        // A ring of followers comes to no end.
+        for _ in 0..LONGEST {
+            let before = values.clone();
+            for (value, leader) in values.iter_mut().zip(&leaders) {
+                if let Some((mimic, leader)) = leader {
+                    *value = mimic.multiplier * before[*leader] + mimic.offset;
+                }
+            }
+            if values == before {
+                break;
+            }
+        }
+        values
+    }
+}
+
+impl RobotJoint {
+    /// What a value moves, in the joint's own frame.
+    fn moved(&self, value: f64) -> Isometry3<f64> {
+        match self.motion {
+            Motion::Revolute | Motion::Continuous => Isometry3::rotation(self.axis * value),
+            Motion::Prismatic => Isometry3::from_parts((self.axis * value).into(), UnitQuaternion::identity()),
+            Motion::Fixed | Motion::Other(_) => Isometry3::identity(),
+        }
+    }
+}
