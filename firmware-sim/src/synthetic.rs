@@ -91,6 +91,7 @@ pub fn walk_on(skeleton: &Skeleton, frames: usize, seed: u64) -> Clip {
         frame_time: 1.0 / FRAME_RATE,
         root: Vec::new(),
         rotations: Vec::new(),
+        coordinates: None,
         notes: Vec::new(),
     };
     for frame in 0..frames {

@@ -46,7 +46,7 @@ fn walks_before_and_after() {
         let map = JointMap::detect(&clip.skeleton).unwrap();
         Source { path: "made".into(), clip, map, log: None }.on_rig(&rig, 60.0).unwrap()
     });
-    let result = rig.clip(&play(&pack, &rig, &rig.poses(&source), &Settings::default()).unwrap(), source.frame_time);
+    let result = play(&pack, &rig, &source, &Settings::default()).unwrap();
     let rows = [("a walk", &source), ("through models/weary.kin", &result), ("the same walk, weary", &target)];
     // On white: pages are read on dark grounds too.
     let svg = stick_figures(&rows).replacen(">\n", ">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n", 1);

@@ -220,8 +220,7 @@ fn played(view: &Pack, scorer: &Scorer, strengths: &[f32]) -> Result<(Vec<f64>, 
     // Cycles are read between strikes: the first and the last round are cut.
     let rounds = if HostEmotion::load(view)?.meta().cycle { 5.0 } else { 1.0 };
     let seconds = f64::from(rounds * one.round[0]);
-    let poses = play(view, &Settings { seconds: Some(seconds), ..settings })?.poses;
-    let clip = scorer.rig.clip(&poses, 1.0 / FRAME_RATE);
+    let clip = play(view, &Settings { seconds: Some(seconds), ..settings })?.clip;
     let read = mean(&scorer.read(&clip));
     if read.is_empty() { Err(format!("nothing is read at {strengths:?}").into()) } else { Ok((read, clip)) }
 }

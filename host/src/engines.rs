@@ -1,24 +1,25 @@
 //! What the host knows of every engine: one registry, one arm per engine. `inspect`, `apply`, `view`, `export --rust` and the golden packs ask
 //! it. Only a learned clock and a stored motion belong to one engine each, and `apply` asks for these by name.
 
+use kinesic::Pack;
 use kinesic::engine::Controls;
 use kinesic::mechanics::Modulation;
 use kinesic::model::{
     ComponentsMeta, EmotionMeta, FaceMeta, LimitsMeta, LoadError, MechanicsMeta, ModelMeta, TranslatorMeta,
 };
-use kinesic::{Pack, Pose};
 use serde_json::{Value, json};
 
+use crate::clip::Clip;
 use crate::components::{self, HostComponents};
 use crate::emotion::HostEmotion;
 use crate::face::HostFace;
 use crate::limit::{HostLimiter, LimitsModel};
 use crate::mechanics::{HostMechanics, decouple, modulate};
-use crate::rig::{MAX_JOINTS, MAX_ROWS, Rig, RigError};
+use crate::rig::{MAX_ROWS, Rig, RigError};
 use crate::translate::{self, HostTranslator, Timing};
 
-/// Plays the poses of a clip on the pack's rig and at its frame rate, as on a live stream.
-pub type Play = fn(&Pack, &Rig, &[Pose<MAX_JOINTS>], Controls<MAX_ROWS>) -> Result<Vec<Pose<MAX_JOINTS>>, LoadError>;
+/// Plays a clip on the pack's rig and at its frame rate, as on a live stream.
+pub type Play = fn(&Pack, &Rig, &Clip, Controls<MAX_ROWS>) -> Result<Clip, LoadError>;
 
 /// How an engine plays clips.
 #[derive(Clone, Copy, Debug)]
@@ -113,8 +114,8 @@ impl Known for TranslatorMeta<'_> {
     }
 
     fn player(&self) -> Option<Player> {
-        let play: Play = |pack, rig, poses, controls| {
-            translate::play(pack, rig, poses, &translate::Settings { controls, timing: Timing::Keep })
+        let play: Play = |pack, rig, clip, controls| {
+            translate::play(pack, rig, clip, &translate::Settings { controls, timing: Timing::Keep })
         };
         Some(Player { order: 0, plausible: self.strength, applies: true, play })
     }
@@ -151,9 +152,9 @@ impl Known for MechanicsMeta {
     }
 
     fn player(&self) -> Option<Player> {
-        let play: Play = |pack, _, poses, Controls { strength, .. }| {
-            let modulation = Modulation { amount: strength, ..Modulation::default() };
-            Ok(modulate(poses, &decouple(pack, poses)?, &modulation))
+        let play: Play = |pack, rig, clip, Controls { strength, .. }| {
+            let (modulation, poses) = (Modulation { amount: strength, ..Modulation::default() }, rig.poses(clip));
+            Ok(rig.clip(&modulate(&poses, &decouple(pack, &poses)?, &modulation), clip.frame_time))
         };
         Some(Player { order: u8::MAX, plausible: [0.0, 2.0], applies: false, play })
     }
@@ -186,7 +187,7 @@ impl Known for ComponentsMeta<'_> {
 
     fn player(&self) -> Option<Player> {
         let play: Play =
-            |pack, rig, poses, controls| components::play(pack, rig, poses, &components::Settings { controls });
+            |pack, rig, clip, controls| components::play(pack, rig, clip, &components::Settings { controls });
         Some(Player { order: 1, plausible: self.strength, applies: true, play })
     }
 }

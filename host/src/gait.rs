@@ -96,6 +96,7 @@ pub fn walk(manner: &Manner, seconds: f64, fps: f64, phase: f64, seed: u64) -> C
         frame_time: 1.0 / fps,
         root: Vec::with_capacity(frames),
         rotations: Vec::with_capacity(frames * JOINTS.len()),
+        coordinates: None,
         notes: Vec::new(),
     };
     let mut angle = TAU * phase;

@@ -52,7 +52,7 @@ pub fn retarget(clip: &Clip, map: &JointMap, rig: &Rig) -> Result<Clip, Retarget
             .push("The rest pose differs from the pack's: directions of bones were transferred, not rotations.".into());
         corrected(clip, &rig.skeleton)
     };
-    Ok(Clip { skeleton: rig.skeleton.clone(), frame_time: clip.frame_time, root, rotations, notes })
+    Ok(Clip { skeleton: rig.skeleton.clone(), frame_time: clip.frame_time, root, rotations, coordinates: None, notes })
 }
 
 fn same_joints(a: &Skeleton, b: &Skeleton) -> bool {

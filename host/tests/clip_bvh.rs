@@ -151,6 +151,7 @@ fn person(scale: f64, z_up: bool) -> String {
         frame_time: 1.0 / 60.0,
         root: vec![scale * hips; 2],
         rotations: rotations.collect(),
+        coordinates: None,
         notes: vec![],
     };
     clip.to_bvh(&WriteOptions { units: Unit::Metre }).expect("writable")

@@ -46,6 +46,7 @@ fn person() -> Clip {
         frame_time: 1.0 / 30.0,
         root: (0..frames).map(|f| Vector3::new(0.01, 0.92, 0.03 * f as f64)).collect(),
         rotations: (0..frames * joints.len()).map(turn).collect(),
+        coordinates: None,
         notes: vec![],
     }
 }

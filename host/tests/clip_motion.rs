@@ -43,6 +43,7 @@ fn clip() -> impl Strategy<Value = Clip> {
         frame_time: 1.0 / 60.0,
         rotations: rotations[..9 * root.len()].to_vec(),
         root: root.into_iter().map(Vector3::from).collect(),
+        coordinates: None,
         notes: vec![],
     })
 }
@@ -139,6 +140,7 @@ fn steady(frames: usize) -> Clip {
         frame_time: 0.0166667,
         root: (0..frames).map(|f| Vector3::new(0.01 * f as f64, 1.0, 0.0)).collect(),
         rotations,
+        coordinates: None,
         notes: vec!["kept".into()],
     }
 }

@@ -4,8 +4,9 @@ mod components_common;
 
 use components_common::walk;
 use kinesic::components::{Components, ComponentsState};
-use kinesic::{Frame, LoadError, Pose};
-use kinesic_host::components::{RECORDED, Settings, TrainOptions, Trained, evaluate, play, play_stored, train};
+use kinesic::{Frame, LoadError, Pack, Pose};
+use kinesic_host::clip::Clip;
+use kinesic_host::components::{self, RECORDED, Settings, TrainOptions, Trained, evaluate, train};
 use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_host::rig::{MAX_JOINTS, Rig};
 use nalgebra::{UnitQuaternion, Vector3, Vector4};
@@ -26,6 +27,16 @@ fn pack(rig: &Rig) -> PackFile {
     PackFile::from_bytes(&trained(rig).model.pack(rig, &Provenance::default()))
 }
 
+/// The poses that a clip becomes.
+fn play(pack: &Pack, rig: &Rig, source: &Clip, settings: &Settings) -> Vec<Pose<MAX_JOINTS>> {
+    rig.poses(&components::play(pack, rig, source, settings).expect("plays"))
+}
+
+/// The poses of the stored stream.
+fn play_stored(pack: &Pack, rig: &Rig, settings: &Settings) -> Vec<Pose<MAX_JOINTS>> {
+    rig.poses(&components::play_stored(pack, rig, settings).expect("plays"))
+}
+
 fn apart(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
@@ -42,10 +53,11 @@ fn strength_and_mask_of_a_live_stream() {
     let rig = rig();
     let file = pack(&rig);
     let pack = file.pack().expect("loads");
-    let source = rig.poses(&walk(&rig, 90, 1.1, 0.2));
+    let clip = walk(&rig, 90, 1.1, 0.2);
+    let source = rig.poses(&clip);
     let mut settings = Settings::default();
     settings.controls.strength = 0.0;
-    let same = play(&pack, &rig, &source, &settings).expect("plays");
+    let same = play(&pack, &rig, &clip, &settings);
     for (a, b) in same.iter().zip(&source) {
         assert!((a.root - b.root).norm() < 1e-6);
         assert!(a.rotations.iter().zip(&b.rotations).take(13).all(|(a, b)| (a.coords - b.coords).norm() < 1e-5));
@@ -54,12 +66,12 @@ fn strength_and_mask_of_a_live_stream() {
     let mut joints = [1.0; MAX_JOINTS];
     (joints[7], joints[0]) = (0.0, 0.0);
     settings.controls.mask = rig.coordinate_weights(&joints);
-    let styled = play(&pack, &rig, &source, &settings).expect("plays");
+    let styled = play(&pack, &rig, &clip, &settings);
     let spine = |poses: &[Pose<MAX_JOINTS>]| poses.iter().map(|p| p.rotations[7].coords).collect::<Vec<_>>();
     assert!(spine(&styled).iter().zip(spine(&source)).all(|(a, b)| (a - b).norm() < 1e-6));
     assert!(styled.iter().zip(&source).all(|(a, b)| (a.root - b.root).norm() < 1e-6));
     settings.controls.mask = Settings::default().controls.mask;
-    let styled = rig.locals(&play(&pack, &rig, &source, &settings).expect("plays")).positions;
+    let styled = rig.locals(&play(&pack, &rig, &clip, &settings)).positions;
     let moved = apart(&styled, &rig.locals(&source).positions);
     assert!(moved > 0.05, "the style moves nothing: {moved} m");
 }
@@ -71,7 +83,7 @@ fn the_stored_stream_at_strength_0_is_the_content() {
     let file = pack(&rig);
     let mut settings = Settings::default();
     settings.controls.strength = 0.0;
-    let played = play_stored(&file.pack().expect("loads"), &rig, &settings).expect("plays");
+    let played = play_stored(&file.pack().expect("loads"), &rig, &settings);
     assert_eq!(played.len(), 150);
     let (found, wanted) = (rig.locals(&played), rig.locals(&rig.poses(&content)));
     assert!(apart(&found.positions, &wanted.positions) < 0.03, "{}", apart(&found.positions, &wanted.positions));
@@ -97,7 +109,7 @@ fn the_stored_stream_at_strength_0_is_the_content() {
 fn heads_and_hands_are_styled() {
     let rig = rig();
     let (content, style) = (rig.poses(&walk(&rig, 150, 1.0, 0.1)), rig.poses(&walk(&rig, 130, 1.8, 0.6)));
-    let played = play_stored(&pack(&rig).pack().expect("loads"), &rig, &Settings::default()).expect("plays");
+    let played = play_stored(&pack(&rig).pack().expect("loads"), &rig, &Settings::default());
     let mean = |poses: &[Pose<MAX_JOINTS>], joint: usize| {
         let sum = poses.iter().map(|pose| pose.rotations[joint].coords).sum::<Vector4<f32>>();
         UnitQuaternion::new_normalize(sum.into())
@@ -117,16 +129,17 @@ fn bones_keep_their_length_and_the_content_its_path() {
     let rig = rig();
     let file = pack(&rig);
     let pack = file.pack().expect("loads");
-    let source = rig.poses(&walk(&rig, 90, 1.1, 0.2));
+    let clip = walk(&rig, 90, 1.1, 0.2);
+    let source = rig.poses(&clip);
     for strength in [0.5, 1.0, 2.0] {
         let mut settings = Settings::default();
         settings.controls.strength = strength;
-        let live = play(&pack, &rig, &source, &settings).expect("plays");
+        let live = play(&pack, &rig, &clip, &settings);
         for (styled, source) in live.iter().zip(&source) {
             // Travel has no component: only the height is styled.
             assert!((styled.root - source.root).xz().norm() < 1e-5);
         }
-        for played in [live, play_stored(&pack, &rig, &settings).expect("plays")] {
+        for played in [live, play_stored(&pack, &rig, &settings)] {
             let positions = rig.locals(&played).positions;
             for (joint, frame) in positions.chunks_exact(39).flat_map(|frame| (1..13).map(move |j| (j, frame))) {
                 let bone = &rig.skeleton.joints[joint];

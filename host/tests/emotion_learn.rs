@@ -80,7 +80,7 @@ fn unseen_walks_are_read_and_what_is_asked_for_is_played() {
         let asks = [strength, 0.0, 0.0, 0.0];
         let played = play(&pack, &Settings { from: asks, to: asks, fps: FRAME_RATE, seconds: Some(8.0) }).unwrap();
         asked.push(f64::from(strength));
-        read.push(mean(&scorer.read(&scorer.rig.clip(&played.poses, 1.0 / FRAME_RATE)))[0]);
+        read.push(mean(&scorer.read(&played.clip))[0]);
     }
     assert!(spearman(&asked, &read) > 0.99, "{read:?}");
     assert!(asked.iter().zip(&read).all(|(a, b)| (a - b).abs() < 0.15), "{read:?}");
@@ -123,9 +123,10 @@ fn every_joint_that_turns_in_the_clips_turns_with_the_strength() {
     };
     let played = [0.0, 1.0].map(|strength| {
         let asked = [strength, 0.0, 0.0, 0.0];
-        play(&pack, &Settings { from: asked, to: asked, fps: FRAME_RATE, seconds: None }).unwrap().poses
+        play(&pack, &Settings { from: asked, to: asked, fps: FRAME_RATE, seconds: None }).unwrap().clip
     });
     let rig = rig();
+    let played = played.map(|clip| rig.poses(&clip));
     let clips = [0.0, 1.0].map(|weary| rig.poses(&walk(&manner(weary), 8.0, FRAME_RATE, 0.1, 77)));
     let mut turned = 0;
     for joint in 1..rig.joints() {

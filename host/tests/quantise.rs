@@ -2,26 +2,25 @@
 
 use std::path::{Path, PathBuf};
 
-use kinesic::Pose;
-use kinesic_host::clip::JointMap;
+use kinesic_host::clip::{Clip, JointMap};
 use kinesic_host::gait::{Manner, walk};
 use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_host::prepare::Source;
 use kinesic_host::quantise::{QuantiseError, difference, to_int8, to_int16, translated_difference};
-use kinesic_host::rig::{MAX_JOINTS, Rig};
+use kinesic_host::rig::Rig;
 
 fn model(name: &str) -> PackFile {
     PackFile::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../models").join(name)).unwrap()
 }
 
 /// A made walk on the pack's body.
-fn unseen(file: &PackFile, manner: &Manner) -> Vec<Pose<MAX_JOINTS>> {
+fn unseen(file: &PackFile, manner: &Manner) -> Clip {
     let pack = file.pack().unwrap();
     let rig = Rig::from_pack(&pack).unwrap();
     let clip = walk(manner, 6.0, 60.0, 0.0, 5);
     let map = JointMap::detect(&clip.skeleton).unwrap();
     let fps = f64::from(pack.metadata().frame_rate);
-    rig.poses(&Source { path: PathBuf::from("made"), clip, map, log: None }.on_rig(&rig, fps).unwrap())
+    Source { path: PathBuf::from("made"), clip, map, log: None }.on_rig(&rig, fps).unwrap()
 }
 
 #[test]
@@ -30,8 +29,10 @@ fn an_int8_network_is_within_half_a_degree() {
     let bytes = to_int8(&file, &Provenance::default()).unwrap();
     assert_eq!(bytes, to_int8(&file, &Provenance::default()).unwrap());
     let rounded = PackFile::from_bytes(&bytes);
-    let poses = unseen(&file, &Manner::WEARY);
-    let found = difference(&file.pack().unwrap(), &rounded.pack().unwrap(), &[poses]).unwrap();
+    let clip = unseen(&file, &Manner::WEARY);
+    let pack = file.pack().unwrap();
+    let rig = Rig::from_pack(&pack).unwrap();
+    let found = difference(&pack, &rounded.pack().unwrap(), &rig, &[clip]).unwrap();
     println!("{found:?}, {} bytes", bytes.len());
     // Not zero: the weights were really rounded.
     assert!(found.frames > 300 && found.mean_deg > 1e-3 && found.mean_deg < 0.5 && found.worst_deg < 4.0, "{found:?}");

@@ -60,7 +60,14 @@ impl Clip {
             rotations.extend(partners.iter().filter_map(|&p| pose.get(p)).map(reflect_rotation));
         }
         let root = self.root.iter().copied().map(reflect).collect();
-        Ok(Clip { skeleton, frame_time: self.frame_time, root, rotations, notes: self.notes.clone() })
+        Ok(Clip {
+            skeleton,
+            frame_time: self.frame_time,
+            root,
+            rotations,
+            coordinates: None,
+            notes: self.notes.clone(),
+        })
     }
 }
 

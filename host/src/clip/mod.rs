@@ -99,6 +99,8 @@ pub struct Clip {
     pub root: Vec<Vector3<f64>>,
     /// Rotation of each joint relative to its parent (the root's: to the world), row-major `[frames x joints]`.
     pub rotations: Vec<UnitQuaternion<f64>>,
+    /// Of a machine's motion: the coordinates of its rig, rad or m, row-major `[frames x 3 rows]`; `rotations` then only show them.
+    pub coordinates: Option<Vec<f64>>,
     /// What the reader changed or assumed on the way in, one sentence each; `kinesic inspect` prints them.
     pub notes: Vec<String>,
 }
@@ -129,8 +131,19 @@ impl Clip {
             frame_time: self.frame_time,
             root: self.root.get(start..end).unwrap_or(&[]).to_vec(),
             rotations: self.rotations.get(start * n..end * n).unwrap_or(&[]).to_vec(),
+            coordinates: self.coordinates.as_ref().map(|all| {
+                let width = all.len() / self.frames().max(1);
+                all.get(start * width..end * width).unwrap_or(&[]).to_vec()
+            }),
             notes: self.notes.clone(),
         }
+    }
+
+    /// The coordinates of a frame of a machine's motion; `None` for a body's.
+    pub fn coordinates(&self, frame: usize) -> Option<&[f64]> {
+        let all = self.coordinates.as_ref()?;
+        let width = all.len() / self.frames().max(1);
+        all.get(frame * width..(frame + 1) * width)
     }
 
     /// The clip with some of its joints, and with those that carry them. A joint that loses its children keeps the first as its tip.
@@ -156,6 +169,7 @@ impl Clip {
             frame_time: self.frame_time,
             root: self.root.clone(),
             rotations: self.rotations.iter().filter(kept).copied().collect(),
+            coordinates: None,
             notes: self.notes.clone(),
         }
     }

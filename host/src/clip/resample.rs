@@ -91,6 +91,11 @@ impl Clip {
             // A half turn within a frame has no shortest arc; the nearer frame is as good as any.
             let nearer = |a, b| if part < 0.5 { a } else { b };
             out.rotations.extend(pairs.map(|(a, b)| a.try_slerp(b, part, 1e-12).unwrap_or(*nearer(a, b))));
+            if let (Some(a), Some(b), Some(to)) =
+                (self.coordinates(before), self.coordinates(after), &mut out.coordinates)
+            {
+                to.extend(a.iter().zip(b).map(|(a, b)| a + part * (b - a)));
+            }
         }
         Ok(out)
     }
@@ -99,12 +104,17 @@ impl Clip {
     fn every(&self, step: usize, frame_time: f64) -> Clip {
         let root = self.root.iter().step_by(step).copied().collect();
         let rotations = (0..self.frames()).step_by(step).flat_map(|f| self.pose(f).iter().copied()).collect();
-        Clip { root, rotations, ..self.shell(frame_time) }
+        let coordinates = self
+            .coordinates
+            .as_ref()
+            .map(|_| (0..self.frames()).step_by(step).filter_map(|f| self.coordinates(f)).flatten().copied().collect());
+        Clip { root, rotations, coordinates, ..self.shell(frame_time) }
     }
 
     fn shell(&self, frame_time: f64) -> Clip {
         let (skeleton, notes) = (self.skeleton.clone(), self.notes.clone());
-        Clip { skeleton, frame_time, root: Vec::new(), rotations: Vec::new(), notes }
+        let coordinates = self.coordinates.as_ref().map(|_| Vec::new());
+        Clip { skeleton, frame_time, root: Vec::new(), rotations: Vec::new(), coordinates, notes }
     }
 }
 

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use clap::ValueEnum;
+use kinesic::Pack;
 use kinesic::engine::Controls;
 use kinesic::model::ModelMeta;
-use kinesic::{Pack, Pose};
 use kinesic_host::clip::{Clip, Memory};
 use kinesic_host::pack::PackFile;
 use kinesic_host::prepare::Source;
@@ -114,7 +114,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
         None => None,
     };
     let played = play(args, &pack, &rig, clip.as_ref(), controls)?;
-    let styled = rig.clip(&played.poses, 1.0 / fps);
+    let styled = played.clip;
     styled.write(&args.out).into_diagnostic()?;
     bar.finish_and_clear();
     let summary = Summary {
@@ -142,7 +142,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
 
 /// What a pack made, and the strengths that it calls plausible.
 struct Played {
-    poses: Vec<Pose<MAX_JOINTS>>,
+    clip: Clip,
     plausible: [f32; 2],
 }
 
@@ -175,15 +175,15 @@ fn play(
         (Some(("translator", player)), Some(clip)) if learned => {
             check_length(args, pack, clip)?;
             let settings = translate::Settings { controls, timing: Timing::Learned };
-            let poses = translate::play(pack, rig, &rig.poses(clip), &settings).into_diagnostic()?;
-            return Ok(Played { poses, plausible: player.plausible });
+            let clip = translate::play(pack, rig, clip, &settings).into_diagnostic()?;
+            return Ok(Played { clip, plausible: player.plausible });
         }
         (Some((engine, _)), Some(_)) if learned => {
             return Err(miette!("--timing learned: the {engine} of this pack has no timing, only a translator has"));
         }
         (Some((_, player)), Some(clip)) => {
-            let poses = (player.play)(pack, rig, &rig.poses(clip), controls).into_diagnostic()?;
-            return Ok(Played { poses, plausible: player.plausible });
+            let clip = (player.play)(pack, rig, clip, controls).into_diagnostic()?;
+            return Ok(Played { clip, plausible: player.plausible });
         }
         _ => {}
     }
@@ -191,11 +191,11 @@ fn play(
         if learned {
             return Err(miette!("--timing learned: the stored motion has no timing, only a translator has"));
         }
-        let poses = components::play_stored(pack, rig, &components::Settings { controls }).into_diagnostic()?;
-        if poses.is_empty() {
+        let clip = components::play_stored(pack, rig, &components::Settings { controls }).into_diagnostic()?;
+        if clip.frames() == 0 {
             return Err(miette!(help = "name a clip to play", "the pack stores no motion"));
         }
-        return Ok(Played { poses, plausible: meta.strength });
+        return Ok(Played { clip, plausible: meta.strength });
     }
     let (found, help) = match args.stored {
         true => ("--stored: the pack holds no style components, which alone store a motion", "name a clip to play"),

@@ -93,12 +93,11 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let map = JointMap::detect(&neutral.skeleton).ok_or_else(|| miette!("the made skeleton is not known"))?;
     let rig = Rig::new(&neutral.skeleton, &map).into_diagnostic()?;
     let rig = rig.centred(&[&rig.poses(&neutral), &rig.poses(&weary)]);
-    let locals = |clip: &Clip| rig.locals(&rig.poses(clip));
     let pair = TrainPair {
         source_name: "neutral.bvh".into(),
         target_name: "weary.bvh".into(),
-        source: locals(&neutral),
-        target: locals(&weary),
+        source: rig.locals_of(&neutral),
+        target: rig.locals_of(&weary),
     };
     let options = TrainOptions { form: FormChoice::WholeBody, ..TrainOptions::default() };
     let mut trained = train(&rig, &[pair], "weary", FPS, &options, &|_| {}).into_diagnostic()?;
@@ -113,9 +112,8 @@ pub fn run(args: &Args) -> miette::Result<()> {
         ..Provenance::default()
     };
     let preview = PackFile::from_bytes(&trained.model.pack(&rig, &provenance));
-    let (sources, targets) = ([rig.poses(&neutral)], [rig.poses(&weary)]);
     trained.model.strength =
-        plausible(&preview.pack().into_diagnostic()?, &rig, &sources, &targets).into_diagnostic()?;
+        plausible(&preview.pack().into_diagnostic()?, &rig, &[&neutral], &[&weary]).into_diagnostic()?;
     let bytes = trained.model.pack(&rig, &provenance);
     let path = |name: &str| args.out.join(name);
     write_whole(&path("weary.kin"), &bytes)?;

@@ -147,10 +147,10 @@ fn measure(
     for (index, path) in paths.iter().enumerate() {
         say(format!("clip {} of {}", index + 1, paths.len()));
         let source = Source::read(path, &options).into_diagnostic()?;
-        clips.push(rig.poses(&source.on_rig(&rig, fps).into_diagnostic()?));
+        clips.push(source.on_rig(&rig, fps).into_diagnostic()?);
     }
     let found = match precision {
-        Precision::I8 => difference(before, after, &clips),
+        Precision::I8 => difference(before, after, &rig, &clips),
         _ => translated_difference(before, after, &rig, &clips),
     };
     found.into_diagnostic()

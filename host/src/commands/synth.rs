@@ -71,7 +71,7 @@ struct Summary {
     /// Length of the motion, or of a round of a cycle, at the start and at the end, s.
     round_s: [f32; 2],
     /// Way of the root along the ground, as the crow flies, m.
-    travel_m: f32,
+    travel_m: f64,
     attributes: Vec<Attribute>,
 }
 
@@ -98,19 +98,19 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let played = play(&pack, &Settings { from, to, fps, seconds: args.seconds }).into_diagnostic()?;
     let scorer = Scorer::load(&pack).into_diagnostic()?;
     let scores = [scorer.made(&pack, &from).into_diagnostic()?, scorer.made(&pack, &to).into_diagnostic()?];
-    scorer.rig.clip(&played.poses, 1.0 / fps).write(&args.out).into_diagnostic()?;
+    played.clip.write(&args.out).into_diagnostic()?;
 
     let both = |of: [Strengths; 2], at: usize| of.map(|strengths| strengths[at]);
-    let travel = match (played.poses.first(), played.poses.last()) {
-        (Some(first), Some(last)) => (last.root - first.root).xz().norm(),
+    let travel = match (played.clip.root.first(), played.clip.root.last()) {
+        (Some(first), Some(last)) => (last - first).xz().norm(),
         _ => 0.0,
     };
     let summary = Summary {
         out: args.out.display().to_string(),
         motion: meta.motion.to_owned(),
-        frames: played.poses.len(),
+        frames: played.clip.frames(),
         fps,
-        seconds: (played.poses.len() - 1) as f64 / fps,
+        seconds: (played.clip.frames() - 1) as f64 / fps,
         cycle: meta.cycle,
         round_s: played.round,
         travel_m: travel,

@@ -91,9 +91,9 @@ fn streams(pack: &Pack, rig: &Rig) -> Result<[Measurable; 2], EvaluateError> {
         return Err(EvaluateError::NoStream);
     }
     let mut settings = Settings::default();
-    let styled = Measurable::of_poses(rig, &play_stored(pack, rig, &settings)?);
+    let styled = Measurable::new(rig, &play_stored(pack, rig, &settings)?);
     settings.controls.strength = 0.0;
-    Ok([styled, Measurable::of_poses(rig, &play_stored(pack, rig, &settings)?)])
+    Ok([styled, Measurable::new(rig, &play_stored(pack, rig, &settings)?)])
 }
 
 /// Names under which the training records what [`evaluate`] cannot measure.

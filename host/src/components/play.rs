@@ -1,12 +1,12 @@
 //! Plays a pack of components through the device's own code, frame by frame.
 
+use kinesic::Pack;
 use kinesic::components::{Components, ComponentsState};
 use kinesic::engine::Controls;
 use kinesic::model::LoadError;
-use kinesic::rig::Drift;
-use kinesic::{Pack, Pose};
 
-use crate::rig::{HostFrame, MAX_JOINTS, MAX_ROWS, Rig};
+use crate::clip::Clip;
+use crate::rig::{HostFrame, MAX_ROWS, Rig};
 
 /// Components that the host steps.
 pub const MAX_COMPONENTS: usize = 256;
@@ -21,32 +21,24 @@ pub struct Settings {
     pub controls: Controls<MAX_ROWS>,
 }
 
-/// Restyles the poses of a clip at the pack's frame rate, as on a live stream. `rig` is the pack's.
-pub fn play(
-    pack: &Pack,
-    rig: &Rig,
-    source: &[Pose<MAX_JOINTS>],
-    settings: &Settings,
-) -> Result<Vec<Pose<MAX_JOINTS>>, LoadError> {
+/// Restyles a clip on the pack's rig and at its frame rate, as on a live stream.
+pub fn play(pack: &Pack, rig: &Rig, source: &Clip, settings: &Settings) -> Result<Clip, LoadError> {
     let components = HostComponents::load(pack)?;
     let mut state = ComponentsState::new();
     state.controls = settings.controls;
-    Ok(rig.restyle(source, |frame| components.step(&mut state, frame)))
+    Ok(rig.play(source, |frame| components.step(&mut state, frame)))
 }
 
 /// Plays the stored stream once, from the origin, facing +Z. Empty where the pack holds none. `rig` is the pack's.
-pub fn play_stored(pack: &Pack, rig: &Rig, settings: &Settings) -> Result<Vec<Pose<MAX_JOINTS>>, LoadError> {
+pub fn play_stored(pack: &Pack, rig: &Rig, settings: &Settings) -> Result<Clip, LoadError> {
     let components = HostComponents::load(pack)?;
-    let device = rig.frames();
     let mut state = ComponentsState::new();
     state.controls = settings.controls;
-    let (mut frame, mut drift) = (HostFrame::new(), Drift::new());
-    let zero = rig.zero_pose();
+    let mut frame = HostFrame::new();
     let step = |_| {
-        let mut pose = zero;
         components.step_stored(&mut state, &mut frame);
-        device.show(&frame, &frame, &mut drift, &mut pose);
-        pose
+        frame
     };
-    Ok((0..components.frames()).map(step).collect())
+    let frames: Vec<HostFrame> = (0..components.frames()).map(step).collect();
+    Ok(rig.clip_of(&frames, 1.0 / f64::from(pack.metadata().frame_rate)))
 }

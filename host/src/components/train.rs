@@ -1,7 +1,6 @@
 //! From two clips to a model.
 
 use faer::Mat;
-use kinesic::Pose;
 use kinesic::model::LoadError;
 
 use super::count::{Choice, choose_kept, fits, kept};
@@ -17,7 +16,7 @@ use crate::align::{AlignError, Ends};
 use crate::clip::Clip;
 use crate::measure::{Degrees, Measurable, compare};
 use crate::pack::{PackFile, Provenance};
-use crate::rig::{HostFrame, MAX_JOINTS, Rig};
+use crate::rig::{HostFrame, Rig};
 use crate::step_cache::{StepCache, Unreadable};
 
 /// At a plausible strength the fastest joint is at most so many times faster than the fastest of the training clips.
@@ -142,8 +141,8 @@ pub fn train_kept(
     cache: &StepCache,
 ) -> Result<Trained, TrainError> {
     check(options)?;
-    let [poses, style_poses] = [content, style].map(|clip| rig.poses(clip));
-    let [locals, style_locals] = [&poses, &style_poses].map(|poses| rig.locals(poses));
+    let [locals, style_locals] = [content, style].map(|clip| rig.locals_of(clip));
+    let clips = [content, style];
     let content = Motion::new(rig, &locals);
     let other = Motion::scaled(rig, &style_locals, content.deviation);
     for (which, motion) in [("content", &content), ("style", &other)] {
@@ -180,22 +179,21 @@ pub fn train_kept(
         scale: content.scale.clone(),
         content: own.factors.clone(),
         learned: learned.components.clone(),
-        track: track(&rig.read(&poses)),
+        track: track(&rig.frames_of(clips[0])),
         strength: [0.0, 1.0],
     };
     let [speed, style_speed] = [&locals, &style_locals].map(|l| top_speed(&l.positions, l.channels()));
     model.strength[1] = plausible(&model, rig, locals.channels(), SPEED_UP * speed.max(style_speed));
     let file = PackFile::from_bytes(&model.pack(rig, &Provenance::default()));
     let result = play_stored(&file.pack()?, rig, &Settings::default())?;
-    let target = Measurable::of_poses(rig, &style_poses);
-    let to_style = |poses: &[Pose<MAX_JOINTS>]| {
-        compare(rig, &Measurable::of_poses(rig, poses), &target, Ends::Closed).map(|distance| distance.degrees)
-    };
+    let target = Measurable::new(rig, clips[1]);
+    let to_style =
+        |clip: &Clip| compare(rig, &Measurable::new(rig, clip), &target, Ends::Closed).map(|distance| distance.degrees);
     Ok(Trained {
         reconstruction_error: own.factors.error(content.values.as_ref()),
         style_distance: style_distance(&wanted.factors.components, &learned.components),
         content_distance: content_distance(&own.factors.components, &learned.components),
-        degrees_before: to_style(&poses)?,
+        degrees_before: to_style(clips[0])?,
         degrees_after: to_style(&result)?,
         model,
         choice,

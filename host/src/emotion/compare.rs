@@ -38,7 +38,7 @@ pub fn compare_motions(pack: &Pack, scorer: &Scorer, examples: &[Example]) -> Re
         let still = Settings { from: strengths, to: strengths, fps, seconds: Some(0.0) };
         let round = f64::from(play(pack, &still)?.round[0]);
         let once = play(pack, &Settings { seconds: Some(round), ..still })?;
-        Ok(Measurable::of_poses(&scorer.rig, &once.poses))
+        Ok(Measurable::new(&scorer.rig, &once.clip))
     };
     let middle = scorer.middle();
     let (mut errors, mut identities) = (Vec::new(), Vec::new());

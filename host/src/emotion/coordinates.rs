@@ -4,10 +4,9 @@
 //! row is then no travel but a place. Place and heading are in the frame of the motion's first pose: the ground below its root is the
 //! origin, its heading +Z.
 
-use kinesic::Pose;
 use nalgebra::Vector3;
 
-use crate::rig::{MAX_JOINTS, Rig};
+use crate::rig::{HostFrame, Rig};
 
 /// Numbers of a keyframe.
 pub fn channels(rig: &Rig) -> usize {
@@ -26,13 +25,13 @@ pub fn levers(rig: &Rig) -> Vec<f64> {
     levers
 }
 
-/// The channels of every pose of a motion, `[poses x channels]`.
-pub fn of_poses(rig: &Rig, poses: &[Pose<MAX_JOINTS>]) -> Vec<f64> {
-    let (travels, frames) = (rig.frames().travels(), rig.read(poses));
+/// The channels of every frame of a motion, `[frames x channels]`.
+pub fn of_frames(rig: &Rig, frames: &[HostFrame]) -> Vec<f64> {
+    let travels = rig.frames().travels();
     let Some(first) = frames.first() else { return Vec::new() };
     let (mut before, mut heading) = (first.heading, 0.0);
-    let mut rows = Vec::with_capacity(poses.len() * channels(rig));
-    for frame in &frames {
+    let mut rows = Vec::with_capacity(frames.len() * channels(rig));
+    for frame in frames {
         let start = rows.len();
         rows.extend(frame.coordinates()[..3 * rig.rows()].iter().map(|x| f64::from(*x)));
         if travels {
@@ -94,7 +93,7 @@ mod tests {
         let poses = rig.poses(&clip);
         let rig = rig.centred(&[&poses]);
         for motion in cut(&rig, &clip, Cut::Cycles) {
-            let rows = of_poses(&rig, &poses[motion.start..motion.start + motion.frames()]);
+            let rows = of_frames(&rig, &rig.read(&poses[motion.start..motion.start + motion.frames()]));
             assert_eq!(rows.len(), motion.frames() * channels(&rig));
             let made = positions(&rig, &rows);
             let worst = made.iter().zip(&motion.positions).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);

@@ -86,7 +86,7 @@ impl Scorer {
         // The last frame is the end.
         let frames = ((seconds * FRAME_RATE).round() as usize).max(BETWEEN * self.model.keyframes);
         let settings = Settings { fps: frames as f64 / seconds, seconds: Some(seconds), ..once };
-        let clip = self.rig.clip(&play(pack, &settings)?.poses, 1.0 / settings.fps);
+        let clip = play(pack, &settings)?.clip;
         let motion = Segment::new(&self.rig, &clip, 0..clip.frames());
         Ok(self.score(&motion).unwrap_or_else(|| unreachable!("the motion has more frames than keyframes")))
     }

@@ -6,6 +6,7 @@ use kinesic::rig::Drift;
 use kinesic::{Pack, Pose, Rig as DeviceRig};
 
 use super::model::{HostEmotion, MAX_KEYS};
+use crate::clip::Clip;
 use crate::rig::{HostFrame, MAX_JOINTS, MAX_ROWS, Rig, RigError};
 
 /// Rounds of a cycle that are played where nobody says how long.
@@ -33,10 +34,10 @@ pub struct Settings {
 }
 
 /// What was played.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Played {
-    /// The poses.
-    pub poses: Vec<Pose<MAX_JOINTS>>,
+    /// The motion.
+    pub clip: Clip,
     /// Strengths that played at the first and at the last frame: what was asked for, held inside the pack's range.
     pub strength: [Strengths; 2],
     /// Length of the motion, or of a round, at the first and at the last strengths, s.
@@ -61,16 +62,19 @@ pub fn play(pack: &Pack, settings: &Settings) -> Result<Played, RigError> {
     let rounds = if emotion.meta().cycle { ROUNDS } else { 1.0 };
     let seconds = settings.seconds.unwrap_or_else(|| f64::from(rounds * first.1));
     let last = (seconds * settings.fps).round().clamp(1.0, MOST_FRAMES) as usize;
-    let mut poses = Vec::with_capacity(last + 1);
+    let mut frames = Vec::with_capacity(last + 1);
     for frame in 0..=last {
         let part = frame as f32 / last as f32;
         for ((now, from), to) in state.strength.iter_mut().zip(settings.from).zip(settings.to) {
             *now = from + part * (to - from);
         }
-        poses.push(pose(&emotion, &rig.frames(), &mut state, (1.0 / settings.fps) as f32));
+        let mut next = HostFrame::new();
+        emotion.step(&mut state, (1.0 / settings.fps) as f32, &mut next);
+        frames.push(next);
     }
     let strength = [first.0, state.playing().unwrap_or_default()];
-    Ok(Played { poses, strength, round: [first.1, state.seconds()] })
+    let clip = rig.clip_of(&frames, 1.0 / settings.fps);
+    Ok(Played { clip, strength, round: [first.1, state.seconds()] })
 }
 
 /// How long the motion, or a round of a cycle, takes at strengths, s.

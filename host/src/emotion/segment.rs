@@ -62,6 +62,9 @@ pub struct Segment {
 impl Segment {
     /// A motion of a clip on the rig.
     pub fn new(rig: &Rig, clip: &Clip, frames: std::ops::Range<usize>) -> Self {
+        if clip.coordinates.is_some() {
+            return Self::of_machine(rig, &clip.slice(frames.clone()), frames.start);
+        }
         let hips = [Canonical::LHip, Canonical::RHip].map(|hip| rig.map.joint(hip).unwrap_or_default());
         let mut motion = Self {
             start: frames.start,
@@ -87,6 +90,19 @@ impl Segment {
             motion.rotations.extend(locals.map(|(joint, q)| if joint == 0 { turn * q } else { *q }));
         }
         motion
+    }
+
+    /// A machine's motion: it stands, so what is seen from the root is what there is.
+    fn of_machine(rig: &Rig, clip: &Clip, start: usize) -> Self {
+        let positions = rig.locals_of(clip).positions;
+        Self {
+            start,
+            frame_time: clip.frame_time,
+            postures: positions.clone(),
+            positions,
+            rotations: clip.rotations.clone(),
+            channels: 3 * rig.joints(),
+        }
     }
 
     /// Number of frames.

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use kinesic::Pose;
 
-use super::coordinates::{channels, levers, of_poses, positions};
+use super::coordinates::{channels, levers, of_frames, positions};
 use super::model::{Attribute, EmotionModel, Reading};
 use crate::clip::JointMap;
 use crate::gait::{Manner, skeleton, walk};
@@ -132,7 +132,7 @@ struct Cycle {
 impl Cycle {
     fn new(rig: &Rig, levers: &[f64], moments: &[Moment]) -> Self {
         let poses: Vec<_> = moments.iter().map(|(_, pose)| *pose).collect();
-        let rows = of_poses(rig, &poses);
+        let rows = of_frames(rig, &rig.read(&poses));
         let weighted: Vec<f64> = rows
             .chunks_exact(levers.len())
             .flat_map(|row| row.iter().zip(levers).map(|(x, lever)| x * lever))

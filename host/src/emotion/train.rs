@@ -2,13 +2,14 @@
 
 use rayon::prelude::*;
 
-use super::coordinates::{self, at_frames, levers, of_poses};
+use super::coordinates::{self, at_frames, levers, of_frames};
 use super::features::Projection;
 use super::keyframes::{Curve, Keyframes};
 use super::model::{Attribute, EmotionModel, Reading};
 use super::motions::{Example, Motion, features, motions, pairs, takes};
 use super::segment::{Cut, FRAME_RATE, Segment};
 use super::{MAX_KEYS, MAX_WIDTH};
+use crate::clip::Clip;
 use crate::learn::samples::add_scaled;
 use crate::learn::{RankOptions, RegressOptions, Samples, choose_cost, rank, regress};
 use crate::rig::Rig;
@@ -284,17 +285,17 @@ struct Material {
 
 impl Material {
     fn new(rig: &Rig, motions: &[Motion], keyframes: &Keyframes) -> Self {
-        let poses = |Motion { example, segment }: &Motion| {
-            rig.poses(&example.clip.slice(segment.start..segment.start + segment.frames()))
-        };
-        let poses: Vec<_> = motions.par_iter().map(poses).collect();
+        let clip =
+            |Motion { example, segment }: &Motion| example.clip.slice(segment.start..segment.start + segment.frames());
+        let clips: Vec<Clip> = motions.par_iter().map(clip).collect();
+        let poses: Vec<_> = clips.par_iter().map(|clip| rig.poses(clip)).collect();
         let rig = rig.centred(&poses.iter().map(Vec::as_slice).collect::<Vec<_>>());
         let levers = levers(&rig);
-        let row = |(motion, poses): (&Motion, &Vec<_>)| {
+        let row = |(motion, clip): (&Motion, &Clip)| {
             let frames = keyframes.find(&motion.segment).unwrap_or_default();
-            at_frames(&of_poses(&rig, poses), &levers, &frames, motion.segment.frame_time)
+            at_frames(&of_frames(&rig, &rig.frames_of(clip)), &levers, &frames, motion.segment.frame_time)
         };
-        let rows = motions.par_iter().zip(&poses).flat_map_iter(row).collect();
+        let rows = motions.par_iter().zip(&clips).flat_map_iter(row).collect();
         Self { rows, levers, rig }
     }
 

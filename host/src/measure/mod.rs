@@ -32,7 +32,7 @@ pub struct Measurable {
 impl Measurable {
     /// A clip on the rig.
     pub fn new(rig: &Rig, clip: &Clip) -> Self {
-        Self { positions: rig.locals(&rig.poses(clip)).positions, rotations: clip.rotations.clone() }
+        Self { positions: rig.locals_of(clip).positions, rotations: clip.rotations.clone() }
     }
 
     /// Poses on the rig.

@@ -12,6 +12,7 @@ use kinesic::{MechanicsState, Pack, Pose};
 use nalgebra::UnitQuaternion;
 use serde::Serialize;
 
+use crate::clip::Clip;
 use crate::mechanics::HostMechanics;
 use crate::pack::layout::{IntegerLayer, row_major, tile_bytes};
 use crate::pack::{PackFile, PackWriter, Provenance};
@@ -184,15 +185,15 @@ pub struct Difference {
 
 /// Steps the features over the clips and compares what the two networks predict of them, through the device's code: the
 /// networks' raw output, before decoupling, which hides most of the difference.
-pub fn difference(before: &Pack, after: &Pack, clips: &[Vec<Pose<MAX_JOINTS>>]) -> Result<Difference, LoadError> {
-    let mut angles = Angles::new(before.metadata().joints.len());
+pub fn difference(before: &Pack, after: &Pack, rig: &Rig, clips: &[Clip]) -> Result<Difference, LoadError> {
+    let mut angles = Angles::new(rig.joints());
     let (first, second) = (HostMechanics::load(before)?, HostMechanics::load(after)?);
     let mut state = Box::new(MechanicsState::new());
     let mut parts = Decoupled::identity();
     let (mut a, mut b) = (Pose::identity(), Pose::identity());
-    for poses in clips {
+    for clip in clips {
         *state = MechanicsState::new();
-        for pose in poses {
+        for pose in &rig.poses(clip) {
             first.step(&mut state, pose, &mut parts);
             first.predict(state.features(), state.pose(), &mut a);
             second.predict(state.features(), state.pose(), &mut b);
@@ -203,16 +204,12 @@ pub fn difference(before: &Pack, after: &Pack, clips: &[Vec<Pose<MAX_JOINTS>>]) 
 }
 
 /// Translates the clips with both packs, each from the state that its first pose leads to, and compares the styled poses.
-pub fn translated_difference(
-    before: &Pack,
-    after: &Pack,
-    rig: &Rig,
-    clips: &[Vec<Pose<MAX_JOINTS>>],
-) -> Result<Difference, LoadError> {
+pub fn translated_difference(before: &Pack, after: &Pack, rig: &Rig, clips: &[Clip]) -> Result<Difference, LoadError> {
     let mut angles = Angles::new(rig.joints());
     let settings = translate::Settings::default();
-    for poses in clips {
-        let (first, second) = (play(before, rig, poses, &settings)?, play(after, rig, poses, &settings)?);
+    for clip in clips {
+        let played = |pack| play(pack, rig, clip, &settings).map(|clip| rig.poses(&clip));
+        let (first, second) = (played(before)?, played(after)?);
         first.iter().zip(&second).for_each(|(a, b)| angles.add(a, b));
     }
     Ok(angles.finish())

@@ -126,8 +126,11 @@ impl Rig {
     }
 
     /// The same skeleton with coordinates about the mean of these clips: a joint that never moves has none, any other is a ball. Left
-    /// and right joints have references that are mirror images of each other.
+    /// and right joints have references that are mirror images of each other. A machine keeps the coordinates that it has.
     pub fn centred(&self, clips: &[&[Pose<MAX_JOINTS>]]) -> Self {
+        if !self.frames().travels() {
+            return self.clone();
+        }
         let joints = coordinates::centred(self, clips);
         let coordinates = Coordinates::new(&joints, self.coordinates.across);
         Self { coordinates, ..self.clone() }
@@ -194,6 +197,37 @@ impl Rig {
         styled.collect()
     }
 
+    /// The frames of a clip on this rig, as the device would see them.
+    pub fn frames_of(&self, clip: &Clip) -> Vec<HostFrame> {
+        let Some(coordinates) = &clip.coordinates else { return self.read(&self.poses(clip)) };
+        coordinates.chunks_exact(3 * self.rows().max(1)).map(frame_of).collect()
+    }
+
+    /// What `play` makes of a clip on this rig, frame by frame, in and out as on the device: through poses for a body that travels, from
+    /// coordinates to coordinates for a machine.
+    pub fn play(&self, clip: &Clip, mut play: impl FnMut(&mut HostFrame)) -> Clip {
+        if clip.coordinates.is_none() {
+            return self.clip(&self.restyle(&self.poses(clip), play), clip.frame_time);
+        }
+        let mut frames = self.frames_of(clip);
+        frames.iter_mut().for_each(&mut play);
+        self.clip_of(&frames, clip.frame_time)
+    }
+
+    /// A machine's motion: its coordinates, and poses that show them.
+    pub fn clip_of(&self, frames: &[HostFrame], frame_time: f64) -> Clip {
+        let (rig, mut drift) = (self.frames(), Drift::new());
+        let show = |frame: &HostFrame| {
+            let mut pose = self.zero_pose();
+            rig.show(frame, frame, &mut drift, &mut pose);
+            pose
+        };
+        let clip = self.clip(&frames.iter().map(show).collect::<Vec<_>>(), frame_time);
+        let row = |frame: &HostFrame| frame.coordinates()[..3 * self.rows()].to_vec();
+        let coordinates = (!rig.travels()).then(|| frames.iter().flat_map(row).map(f64::from).collect());
+        Clip { coordinates, ..clip }
+    }
+
     /// The pose whose coordinates are 0: every joint at its reference.
     pub fn zero_pose(&self) -> Pose<MAX_JOINTS> {
         let mut pose = Pose::identity();
@@ -203,19 +237,18 @@ impl Rig {
         pose
     }
 
-    /// What distances are measured in, m, `[frames x channels]`, of coordinates `[frames x 3 rows]`. Of a body: heading-local positions,
-    /// 3 per joint, the root's `[0, height, 0]`. Of a machine that stands: its coordinates times their levers.
+    /// What distances are measured in, m, `[frames x 3 joints]`, of coordinates `[frames x 3 rows]`. Of a body: heading-local positions,
+    /// the root's `[0, height, 0]`. Of a machine: every joint's own coordinates times their levers, 0 past the ones that it has.
     pub fn positions(&self, coordinates: &[f64]) -> Vec<f64> {
         let (rig, skeleton) = (self.frames(), self.device());
         if !rig.travels() {
-            return self.scaled(coordinates);
+            return self.levered(coordinates);
         }
         let mut world = World::<MAX_JOINTS>::identity();
         let mut positions = Vec::with_capacity(coordinates.len());
         let zero = self.zero_pose();
         for row in coordinates.chunks_exact(3 * rig.rows()) {
-            let mut frame = HostFrame::new();
-            frame.coordinates_mut().iter_mut().zip(row).for_each(|(to, from)| *to = *from as f32);
+            let frame = frame_of(row);
             let mut pose = zero;
             rig.show(&frame, &frame, &mut Drift::new(), &mut pose);
             forward(&skeleton, &pose, &mut world);
@@ -233,9 +266,30 @@ impl Rig {
         rows.flat_map(|row| row.iter().zip(&levers).map(|(x, lever)| x * lever)).collect()
     }
 
-    /// A motion of a machine that stands, from its coordinates `[frames x 3 rows]`.
+    /// See [`positions`](Self::positions) of a machine.
+    fn levered(&self, coordinates: &[f64]) -> Vec<f64> {
+        let (levers, places) = (self.levers(), self.frames().places().collect::<Vec<_>>());
+        let joint = |row: &[f64], (kind, first): (JointKind, usize)| -> [f64; 3] {
+            std::array::from_fn(|axis| {
+                let at = first + axis;
+                if axis < kind.coordinates() { row[at] * levers[at] } else { 0.0 }
+            })
+        };
+        let rows = coordinates.chunks_exact(levers.len().max(1));
+        rows.flat_map(|row| places.iter().flat_map(move |place| joint(row, *place))).collect()
+    }
+
+    /// A motion of a machine, from its coordinates `[frames x 3 rows]`.
     pub fn standing(&self, coordinates: Vec<f64>) -> Locals {
-        Locals { channels: 3 * self.rows(), positions: self.scaled(&coordinates), rows: self.rows(), coordinates }
+        Locals { channels: 3 * self.joints(), positions: self.levered(&coordinates), rows: self.rows(), coordinates }
+    }
+
+    /// A clip as the models see it.
+    pub fn locals_of(&self, clip: &Clip) -> Locals {
+        match &clip.coordinates {
+            Some(coordinates) => self.standing(coordinates.clone()),
+            None => self.locals(&self.poses(clip)),
+        }
     }
 
     /// How far a unit of each coordinate moves what hangs on it, m per rad or m: the root of the summed squares over the joints and
@@ -323,17 +377,23 @@ impl Rig {
             skeleton: self.skeleton.clone(),
             frame_time,
             root: poses.iter().map(|pose| pose.root.map(f64::from)).collect(),
+            // As they are: a double holds every single, and `poses` gives the same bits back.
             rotations: poses
                 .iter()
                 .flat_map(|pose| pose.rotations.iter().take(joints))
-                .map(|q| UnitQuaternion::new_normalize(q.into_inner().cast()))
+                .map(|q| UnitQuaternion::new_unchecked(q.into_inner().cast()))
                 .collect(),
+            coordinates: None,
             notes: Vec::new(),
         }
     }
 
     /// Positions and coordinates as the device computes them.
     pub fn locals(&self, poses: &[Pose<MAX_JOINTS>]) -> Locals {
+        if !self.frames().travels() {
+            let row = |frame: &HostFrame| frame.coordinates()[..3 * self.rows()].to_vec();
+            return self.standing(self.read(poses).iter().flat_map(row).map(f64::from).collect());
+        }
         let skeleton = self.device();
         let mut heading = Heading::default();
         let mut world = World::<MAX_JOINTS>::identity();
@@ -348,6 +408,13 @@ impl Rig {
         }
         locals
     }
+}
+
+/// A frame with these coordinates.
+fn frame_of(coordinates: &[f64]) -> HostFrame {
+    let mut frame = HostFrame::new();
+    frame.coordinates_mut().iter_mut().zip(coordinates).for_each(|(to, from)| *to = *from as f32);
+    frame
 }
 
 /// A clip as the models see it.

@@ -139,10 +139,9 @@ pub fn evaluate(
 ) -> Result<Report, EvaluateError> {
     let (mut closed, mut open) = (Vec::new(), Vec::new());
     for pair in pairs {
-        let poses = rig.poses(pair.source.1);
-        let source = Measurable::of_poses(rig, &poses);
+        let source = Measurable::new(rig, pair.source.1);
         let target = Measurable::new(rig, pair.target.1);
-        let styled = Measurable::of_poses(rig, &play(pack, rig, &poses, &Settings::default())?);
+        let styled = Measurable::new(rig, &play(pack, rig, pair.source.1, &Settings::default())?);
         let offset = Measurable {
             positions: baseline::apply_offset(baselines, &source.positions),
             rotations: turns.map_or_else(|| source.rotations.clone(), |t| t.offset(&source.rotations)),

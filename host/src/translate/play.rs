@@ -5,6 +5,7 @@ use kinesic::model::LoadError;
 use kinesic::{Pack, Pose, Translator, TranslatorState};
 use nalgebra::UnitQuaternion;
 
+use crate::clip::Clip;
 use crate::rig::{MAX_JOINTS, MAX_ROWS, Rig};
 
 /// Filter states that the host steps.
@@ -41,20 +42,15 @@ impl Default for Settings {
     }
 }
 
-/// Translates the poses of a clip at the pack's frame rate, from the state that holding the first pose leads to.
-pub fn play(
-    pack: &Pack,
-    rig: &Rig,
-    source: &[Pose<MAX_JOINTS>],
-    settings: &Settings,
-) -> Result<Vec<Pose<MAX_JOINTS>>, LoadError> {
+/// Translates a clip on the pack's rig and at its frame rate, from the state that holding the first frame leads to.
+pub fn play(pack: &Pack, rig: &Rig, source: &Clip, settings: &Settings) -> Result<Clip, LoadError> {
     let translator = HostTranslator::load(pack)?;
     let mut state = Box::new(TranslatorState::new());
     state.controls = settings.controls;
-    let mut clock = Vec::with_capacity(source.len());
+    let mut clock = Vec::with_capacity(source.frames());
     let mut now = 0.0;
     let strength = settings.controls.strength.clamp(-TIMING_STRENGTH, TIMING_STRENGTH);
-    let styled = rig.restyle(source, |frame| {
+    let styled = rig.play(source, |frame| {
         if clock.is_empty() {
             translator.start(&mut state, frame);
         }
@@ -65,27 +61,34 @@ pub fn play(
     });
     Ok(match settings.timing {
         Timing::Keep => styled,
-        Timing::Learned => retime(&styled, &clock),
+        Timing::Learned => retime(rig, &styled, &clock),
     })
 }
 
-/// Poses at whole frames of `clock`, which says when each pose is due, in frames, rising.
-fn retime(poses: &[Pose<MAX_JOINTS>], clock: &[f64]) -> Vec<Pose<MAX_JOINTS>> {
-    let Some(end) = clock.last() else { return Vec::new() };
+/// The motion at whole frames of `clock`, which says when each frame is due, in frames, rising.
+fn retime(rig: &Rig, clip: &Clip, clock: &[f64]) -> Clip {
+    let Some(end) = clock.last().filter(|_| clip.frames() > 1) else { return clip.clone() };
     let mut next = 1;
-    (0..=end.floor() as usize)
-        .map(|frame| {
-            let due = frame as f64;
-            while next + 1 < clock.len() && clock[next] < due {
-                next += 1;
-            }
-            if poses.len() < 2 {
-                return poses[0];
-            }
-            let weight = ((due - clock[next - 1]) / (clock[next] - clock[next - 1])).clamp(0.0, 1.0) as f32;
-            between(&poses[next - 1], &poses[next], weight)
-        })
-        .collect()
+    let due = (0..=end.floor() as usize).map(|frame| {
+        let due = frame as f64;
+        while next + 1 < clock.len() && clock[next] < due {
+            next += 1;
+        }
+        (next, ((due - clock[next - 1]) / (clock[next] - clock[next - 1])).clamp(0.0, 1.0) as f32)
+    });
+    if clip.coordinates.is_none() {
+        let poses = rig.poses(clip);
+        let made: Vec<_> = due.map(|(next, weight)| between(&poses[next - 1], &poses[next], weight)).collect();
+        return rig.clip(&made, clip.frame_time);
+    }
+    let frames = rig.frames_of(clip);
+    let made = due.map(|(next, weight)| {
+        let mut frame = frames[next - 1];
+        let ends = frame.coordinates_mut().iter_mut().zip(frames[next].coordinates());
+        ends.for_each(|(x, to)| *x += weight * (to - *x));
+        frame
+    });
+    rig.clip_of(&made.collect::<Vec<_>>(), clip.frame_time)
 }
 
 /// Linear interpolation of two poses.

@@ -1,10 +1,11 @@
 //! How far a style can be exaggerated before the motion stops being one.
 
+use kinesic::Pack;
 use kinesic::model::LoadError;
-use kinesic::{Pack, Pose};
 
 use super::play::{Settings, play};
-use crate::rig::{Locals, MAX_JOINTS, Rig};
+use crate::clip::Clip;
+use crate::rig::{Locals, Rig};
 
 /// Largest strength that is tried.
 const LIMIT: f64 = 3.0;
@@ -13,20 +14,16 @@ const SPEED_UP: f64 = 1.5;
 
 /// Strengths at which no joint moves (heading-local) more than 1.5 times faster than the fastest of the training clips:
 /// `[0, largest]`, in steps of a quarter, at least 1.
-pub fn plausible(
-    pack: &Pack,
-    rig: &Rig,
-    sources: &[Vec<Pose<MAX_JOINTS>>],
-    targets: &[Vec<Pose<MAX_JOINTS>>],
-) -> Result<[f64; 2], LoadError> {
-    let fastest = |clips: &[Vec<Pose<MAX_JOINTS>>]| clips.iter().map(|c| top_speed(&rig.locals(c))).fold(0.0, f64::max);
-    let bound = SPEED_UP * fastest(sources).max(fastest(targets));
+pub fn plausible(pack: &Pack, rig: &Rig, sources: &[&Clip], targets: &[&Clip]) -> Result<[f64; 2], LoadError> {
+    let fastest =
+        |clips: &mut dyn Iterator<Item = &Clip>| clips.map(|c| top_speed(&rig.locals_of(c))).fold(0.0, f64::max);
+    let bound = SPEED_UP * fastest(&mut sources.iter().chain(targets).copied());
     let mut largest = 1.0;
     while largest < LIMIT {
         let mut settings = Settings::default();
         settings.controls.strength = (largest + 0.25) as f32;
         let styled = sources.iter().map(|clip| play(pack, rig, clip, &settings)).collect::<Result<Vec<_>, _>>()?;
-        if fastest(&styled) > bound {
+        if fastest(&mut styled.iter()) > bound {
             break;
         }
         largest += 0.25;

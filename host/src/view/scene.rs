@@ -7,7 +7,7 @@ use kinesic::{LoadError, Pack, Pose};
 use serde::Serialize;
 
 use super::{ViewClip, ViewError, ViewPack};
-use crate::clip::{Canonical, JointMap, Skeleton};
+use crate::clip::{Canonical, Clip, JointMap, Skeleton};
 use crate::engines;
 use crate::prepare::Source;
 use crate::rig::{MAX_JOINTS, Rig};
@@ -107,22 +107,23 @@ impl<'p> Player<'p> {
     }
 
     pub fn scene(&self, clip: &ViewClip) -> Result<SceneData, ViewError> {
-        let poses = |source: &Source| -> Result<Vec<HostPose>, ViewError> {
-            let on_rig = source.on_rig(&self.rig, f64::from(self.pack.metadata().frame_rate))?;
-            Ok(self.rig.poses(&on_rig))
-        };
-        let source = poses(&clip.source)?;
-        let target = clip.target.as_ref().map(poses).transpose()?;
-        let checked = source.get(..CHECKED).unwrap_or(&source);
+        let on_rig = |source: &Source| source.on_rig(&self.rig, f64::from(self.pack.metadata().frame_rate));
+        let source = on_rig(&clip.source)?;
+        let target = clip.target.as_ref().map(on_rig).transpose()?;
+        let checked = &source.slice(0..CHECKED);
         let controls = Controls { strength: STRENGTH, ..Controls::default() };
         let played = (self.player.play)(&self.pack, &self.rig, checked, controls);
         let played = played.map_err(|error| ViewError::Pack { name: self.name.to_owned(), error })?;
         let joints = self.rig.joints();
-        let text = |poses: &[HostPose]| {
-            let words: Vec<u32> = poses.iter().flat_map(|pose| words(pose, joints)).collect();
+        let text = |clip: &Clip| {
+            let words: Vec<u32> = self.rig.poses(clip).iter().flat_map(|pose| words(pose, joints)).collect();
             BASE64_STANDARD.encode(bytemuck::cast_slice(&words))
         };
-        Ok(SceneData { source: text(&source), target: target.as_deref().map(text), digest: digest(&played, joints) })
+        Ok(SceneData {
+            source: text(&source),
+            target: target.as_ref().map(text),
+            digest: digest(&self.rig.poses(&played), joints),
+        })
     }
 }
 

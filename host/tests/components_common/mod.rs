@@ -50,6 +50,7 @@ pub fn walk(rig: &Rig, frames: usize, energy: f64, stoop: f64) -> Clip {
         frame_time: 1.0 / FRAME_RATE,
         root: Vec::new(),
         rotations: Vec::new(),
+        coordinates: None,
         notes: Vec::new(),
     };
     let turn = |x: f64, y: f64, z: f64| UnitQuaternion::from_euler_angles(x, y, z);

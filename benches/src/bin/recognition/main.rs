@@ -81,7 +81,7 @@ fn one(
         let mut show = |shown, poses: &[Pose<MAX_JOINTS>]| tally.count(shown, style, judges.styles(&clips.rig, poses));
         show(Shown::Source, &source.poses);
         show(Shown::Offset, &offset(rig, teach, source));
-        let output = play(&pack, rig, &source.poses, &Settings::default())?;
+        let output = rig.poses(&play(&pack, rig, &source.clip, &Settings::default())?);
         show(Shown::Output, &output);
         tally.spread(style, [target.poses.as_slice(), &output].map(|poses| seen(&clips.rig, poses)[1].clone()));
         tally.count(Shown::ToStrangers, style, strangers.styles(&clips.rig, &output));

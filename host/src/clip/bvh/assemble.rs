@@ -166,7 +166,7 @@ impl Draft {
         let root = (0..self.frames).map(|f| self.position(0, f)).collect();
         self.joints[0].offset = Vector3::zeros();
         let skeleton = Skeleton { joints: self.joints };
-        Clip { skeleton, frame_time, root, rotations: self.rotations, notes: self.notes }
+        Clip { skeleton, frame_time, root, rotations: self.rotations, coordinates: None, notes: self.notes }
     }
 }
 

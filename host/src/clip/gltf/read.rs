@@ -69,6 +69,7 @@ pub fn parse(bytes: &[u8], folder: Option<&Path>) -> Result<Clip, String> {
         frame_time: 1.0 / fps,
         root: Vec::with_capacity(count),
         rotations: Vec::with_capacity(count * nodes.joints.len()),
+        coordinates: None,
         notes,
     };
     for frame in 0..count {

@@ -155,7 +155,7 @@ pub fn parse(bytes: &[u8], options: &KinectOptions) -> Result<Recording, KinectF
     let skeleton = fit::skeleton(&frames)?;
     let rotations = frames.iter().flat_map(|f| solve::rotations(&skeleton, f, None)).collect();
     let root = frames.iter().map(|f| f[0]).collect();
-    let mut clip = Clip { skeleton, frame_time: 1.0 / options.fps, root, rotations, notes };
+    let mut clip = Clip { skeleton, frame_time: 1.0 / options.fps, root, rotations, coordinates: None, notes };
     clip.make_signs_continuous();
 
     let positions: Vec<Vector3<f64>> = frames.into_iter().flatten().collect();

@@ -139,18 +139,16 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let on_rig = |source: &Source| source.on_rig(&rig, fps).into_diagnostic();
     let clips =
         sources.iter().map(|(a, b)| Ok((on_rig(a)?, on_rig(b)?))).collect::<miette::Result<Vec<(Clip, Clip)>>>()?;
-    let poses = |clips: &mut dyn Iterator<Item = &Clip>| clips.map(|clip| rig.poses(clip)).collect::<Vec<_>>();
-    let source_poses = poses(&mut clips.iter().map(|(neutral, _)| neutral));
-    let target_poses = poses(&mut clips.iter().map(|(_, styled)| styled));
-    let all: Vec<_> = source_poses.iter().chain(&target_poses).map(Vec::as_slice).collect();
-    let rig = rig.centred(&all);
-    let pair = |((source, target), (neutral, styled)): (&(Source, Source), (&Vec<_>, &Vec<_>))| TrainPair {
+    let poses: Vec<_> = clips.iter().flat_map(|(neutral, styled)| [rig.poses(neutral), rig.poses(styled)]).collect();
+    let rig = rig.centred(&poses.iter().map(Vec::as_slice).collect::<Vec<_>>());
+    drop(poses);
+    let pair = |((source, target), (neutral, styled)): (&(Source, Source), &(Clip, Clip))| TrainPair {
         source_name: name_of(&source.name()),
         target_name: name_of(&target.name()),
-        source: rig.locals(neutral),
-        target: rig.locals(styled),
+        source: rig.locals_of(neutral),
+        target: rig.locals_of(styled),
     };
-    let pairs: Vec<TrainPair> = sources.iter().zip(source_poses.iter().zip(&target_poses)).map(pair).collect();
+    let pairs: Vec<TrainPair> = sources.iter().zip(&clips).map(pair).collect();
     let style = session.name(args.style.as_ref(), "style");
     let prints = fingerprints(paths.iter().flat_map(|(a, b)| [a.as_path(), b.as_path()]))?;
     // The same options, the same clips in the same order, read in the same way: the same training.
@@ -180,8 +178,9 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let mut provenance = session.provenance(prints, notes(&trained));
     (provenance.baselines, provenance.turns) = (trained.baselines.clone(), turns.numbers());
     let preview = PackFile::from_bytes(&args.precision.of(trained.model.pack(&rig, &provenance), &provenance)?);
+    let (neutral, styled): (Vec<&Clip>, Vec<&Clip>) = clips.iter().map(|(neutral, styled)| (neutral, styled)).unzip();
     trained.model.strength =
-        plausible(&preview.pack().into_diagnostic()?, &rig, &source_poses, &target_poses).into_diagnostic()?;
+        plausible(&preview.pack().into_diagnostic()?, &rig, &neutral, &styled).into_diagnostic()?;
     let pack = preview.pack().into_diagnostic()?;
     let report = evaluate(&pack, &rig, &trained.baselines, Some(&turns), &named).into_diagnostic()?;
     provenance.metrics = metrics(&trained, &report);

@@ -1,7 +1,7 @@
 //! The report of `kinesic train components`.
 
 use kinesic_host::clip::Clip;
-use kinesic_host::components::{FRAME_RATE, Report, Settings, ToClip, TradeOff, Trained, play_stored};
+use kinesic_host::components::{Report, Settings, ToClip, TradeOff, Trained, play_stored};
 use kinesic_host::pack::PackFile;
 use kinesic_host::report::{Chart, Line, Report as Page, Table, stick_figures};
 use kinesic_host::rig::Rig;
@@ -25,7 +25,6 @@ pub fn page(
          Gram matrix (Phong, Thanh, Yu 2018).",
     );
     let result = play_stored(&file.pack().into_diagnostic()?, rig, &Settings::default()).into_diagnostic()?;
-    let result = rig.clip(&result, 1.0 / FRAME_RATE);
     page.heading("What it does");
     page.figure(
         &stick_figures(&[("content", content), ("style", style), ("result", &result)]),

@@ -6,7 +6,6 @@ use kinesic_host::emotion::motions::Example;
 use kinesic_host::emotion::play::{Settings, Strengths, play, seconds};
 use kinesic_host::emotion::{Distances, HostEmotion, Trained};
 use kinesic_host::report::{Chart, Line, Report as Page, Table, stick_figures};
-use kinesic_host::rig::Rig;
 use miette::IntoDiagnostic;
 
 use crate::commands::angles;
@@ -120,7 +119,6 @@ pub fn page(
 /// The motion at the weakest, a middle and the strongest strength of every attribute, played by the device's code.
 fn drawn(page: &mut Page, trained: &Trained, pack: &Pack) -> miette::Result<()> {
     let attributes = &trained.model.attributes;
-    let rig = Rig::from_pack(pack).into_diagnostic()?;
     let fps = f64::from(trained.model.frame_rate);
     let middle = |[low, high]: [f32; 2]| low.midpoint(high);
     for (index, attribute) in attributes.iter().enumerate() {
@@ -131,7 +129,7 @@ fn drawn(page: &mut Page, trained: &Trained, pack: &Pack) -> miette::Result<()> 
             from.iter_mut().zip(attributes).for_each(|(to, attribute)| *to = middle(attribute.strength));
             from[index] = strength;
             let played = play(pack, &Settings { from, to: from, fps, seconds: None }).into_diagnostic()?;
-            shown.push((format!("{}, {name}: {strength:.2}", attribute.name), rig.clip(&played.poses, 1.0 / fps)));
+            shown.push((format!("{}, {name}: {strength:.2}", attribute.name), played.clip));
         }
         let rows: Vec<_> = shown.iter().map(|(name, clip)| (name.as_str(), clip)).collect();
         page.figure(

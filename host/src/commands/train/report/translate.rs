@@ -17,9 +17,7 @@ pub fn page(trained: &Trained, report: &Report, first: &NamedPair, rig: &Rig, fi
         "State-space models that turn one manner of moving into another (Dong 2018 after Hsu 2005).",
     );
     let ((_, source), (_, target)) = (first.source, first.target);
-    let poses =
-        play(&file.pack().into_diagnostic()?, rig, &rig.poses(source), &Settings::default()).into_diagnostic()?;
-    let styled = rig.clip(&poses, source.frame_time);
+    let styled = play(&file.pack().into_diagnostic()?, rig, source, &Settings::default()).into_diagnostic()?;
     page.heading("What it does").figure(
         &stick_figures(&[("source", source), ("translated", &styled), ("target", target)]),
         "Eight moments from the first to the last frame of each clip of the first training pair; left limbs blue, right ones \
