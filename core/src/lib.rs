@@ -15,6 +15,7 @@
 //! | [`emotion`] | strength of an emotion -> keyframes -> spline -> pose | Chan 2019 |
 //! | [`face`] | strength of a facial expression -> landmarks | Chan 2019 |
 //! | [`limit`] | the last stage: position, velocity and acceleration limits | |
+//! | [`servo`] | a coordinate as the number that a servo takes | |
 //! | [`kernel`] | the few inner loops: matrix x vector, modal recursion, activations | |
 //!
 //! Units are metres, radians, seconds and frames; right-handed, Y up; a person who faces +Z has the left hand at +X.
@@ -61,6 +62,7 @@ pub mod mechanics;
 pub mod model;
 pub mod pose;
 pub mod rig;
+pub mod servo;
 pub mod translate;
 
 pub use components::{Components, ComponentsState};
@@ -72,6 +74,7 @@ pub use mechanics::{BodyMechanics, MechanicsState};
 pub use model::{LoadError, Pack};
 pub use pose::{Pose, Skeleton};
 pub use rig::{Frame, Rig};
+pub use servo::Servos;
 pub use translate::{Translator, TranslatorState};
 
 /// The vectors and quaternions of poses.
