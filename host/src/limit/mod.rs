@@ -130,7 +130,8 @@ impl LimitsModel {
         Ok(pack.finish(provenance))
     }
 
-    fn write(&self, tables: &Tables, pack: &mut PackWriter) {
+    /// Writes the metadata and the tables.
+    pub(crate) fn write(&self, tables: &Tables, pack: &mut PackWriter) {
         pack.model(&ModelMeta::Limits(self.meta));
         tables.write(pack);
     }

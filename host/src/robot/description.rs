@@ -44,6 +44,8 @@ pub struct RobotJoint {
     pub motion: Motion,
     /// Its type as the file spells it.
     pub kind: String,
+    /// The link on which it sits.
+    pub base: String,
     /// The link that it moves.
     pub child: String,
     /// The joint that moves the link on which this one sits; none on the root link.
@@ -82,6 +84,33 @@ impl Robot {
     /// The joint and those that carry it, outwards in.
     pub fn chain(&self, joint: usize) -> impl Iterator<Item = usize> + '_ {
         std::iter::successors(Some(joint), |at| self.joints[*at].parent)
+    }
+
+    /// Name of the root link, if the description says it.
+    pub fn root(&self) -> Option<String> {
+        self.joints
+            .iter()
+            .find(|joint| joint.parent.is_none())
+            .map(|joint| joint.base.clone())
+            .filter(|name| !name.is_empty())
+    }
+
+    /// The joints, each after those that carry it, one limb after the other.
+    pub fn depth_first(&self) -> Vec<usize> {
+        let mut children = vec![Vec::new(); self.joints.len()];
+        let mut open: Vec<usize> = Vec::new();
+        for (at, joint) in self.joints.iter().enumerate().rev() {
+            match joint.parent {
+                Some(parent) => children[parent].push(at),
+                None => open.push(at),
+            }
+        }
+        let mut order = Vec::with_capacity(self.joints.len());
+        while let Some(at) = open.pop() {
+            order.push(at);
+            open.extend(&children[at]);
+        }
+        order
     }
 
     /// The frame of every joint in the root link's, all values zero.

@@ -4,11 +4,17 @@
 //! |---|---|
 //! | `description` | [`Robot`]: joints in a tree, in the frame of the root link |
 //! | `urdf` | [`Robot::parse`]: from a URDF |
+//! | `servos` | [`ServoTable`]: ids, units, zeros, bounds of servos |
+//! | `machine` | [`Machine`]: a robot as packs hold it: rig, limits, servos |
 //! | `error` | [`RobotError`]: place, what was found, what to do |
 
 mod description;
 mod error;
+mod machine;
+mod servos;
 mod urdf;
 
 pub use description::{Mimic, Motion, Robot, RobotJoint};
 pub use error::RobotError;
+pub use machine::{Defaults, Machine, Servo};
+pub use servos::{POSE, PoseEntry, ServoEntry, ServoTable, UNITS, unit_name};

@@ -208,12 +208,14 @@ fn read(node: Node, line: u32) -> Result<RobotJoint, RobotError> {
             offset: number("mimic", "offset")?.unwrap_or(0.0),
         }),
     };
+    let link = |tag| child(node, tag).and_then(|node| node.attribute("link")).unwrap_or_default().to_owned();
     Ok(RobotJoint {
         name: name.to_owned(),
         line,
         motion,
         kind: node.attribute("type").unwrap_or_default().to_owned(),
-        child: child(node, "child").and_then(|node| node.attribute("link")).unwrap_or_default().to_owned(),
+        base: link("parent"),
+        child: link("child"),
         parent: None,
         origin: Isometry3::from_parts(
             Translation3::from(place_of),
