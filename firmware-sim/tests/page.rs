@@ -31,7 +31,7 @@ fn rebuilt() -> (Vec<u8>, String) {
 fn source(manner: &Manner, phase: f64, seed: u64) -> Source {
     let clip = walk(manner, 6.0, 60.0, phase, seed);
     let map = JointMap::detect(&clip.skeleton).unwrap();
-    Source { path: "made".into(), clip, map, log: None }
+    Source::new("made", clip, map)
 }
 
 /// Two engines, two clips, a target: four figures.

@@ -223,7 +223,7 @@ fn emotions_stand_beside_other_packs_and_each_other() {
     // With a clip that other packs play: as long as that, and its sliders do not disturb the others.
     let clip = walk(&Manner::NEUTRAL, 6.0, 60.0, 0.3, 3);
     let map = JointMap::detect(&clip.skeleton).unwrap();
-    let source = Source { path: "made".into(), clip, map, log: None };
+    let source = Source::new("made", clip, map);
     let shown = View {
         packs: vec![ViewPack { name: "weary".to_owned(), file: models::weary() }],
         clips: vec![ViewClip { name: "a walk".to_owned(), source, target: None }],

@@ -45,7 +45,7 @@ fn renamed(file: &PackFile) -> ViewPack {
 fn hostile_names_are_text_on_a_page_that_works() {
     let clip = walk(&Manner::NEUTRAL, 2.0, 60.0, 0.3, 3);
     let map = JointMap::detect(&clip.skeleton).unwrap();
-    let source = Source { path: HOSTILE.into(), clip, map, log: None };
+    let source = Source::new(HOSTILE, clip, map);
     let (model, rig) = emotion::synthetic::model(2);
     let emotions = PackFile::from_bytes(&model.pack(&rig, &Provenance::default()));
     let (smiles, faces) = drawn::faces();

@@ -44,7 +44,7 @@ fn walks_before_and_after() {
     let rig = Rig::from_pack(&pack).unwrap();
     let [source, target] = [source, target].map(|clip| {
         let map = JointMap::detect(&clip.skeleton).unwrap();
-        Source { path: "made".into(), clip, map, log: None }.on_rig(&rig, 60.0).unwrap()
+        Source::new("made", clip, map).on_rig(&rig, 60.0).unwrap()
     });
     let result = play(&pack, &rig, &source, &Settings::default()).unwrap();
     let rows = [("a walk", &source), ("through models/weary.kin", &result), ("the same walk, weary", &target)];
@@ -121,7 +121,7 @@ fn the_live_page() {
     let source = |manner: &Manner, seed: u64| {
         let clip = made(manner, seed);
         let map = JointMap::detect(&clip.skeleton).unwrap();
-        Source { path: "made".into(), clip, map, log: None }
+        Source::new("made", clip, map)
     };
     let packs = [("weary", models::weary()), ("mechanics", models::mechanics())];
     let clip = ViewClip {

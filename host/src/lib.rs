@@ -19,6 +19,7 @@ pub mod limit;
 pub mod measure;
 pub mod mechanics;
 pub mod models;
+pub mod moves;
 pub mod pack;
 pub mod plain;
 pub mod prepare;

@@ -1,14 +1,17 @@
 //! From files to motions on one rig at one frame rate: what every command does before its own work.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use sha2::{Digest, Sha256};
 
 use crate::clip::{self, Canonical, Clip, JointMap, NoteLog, ReadError, ReadOptions, ResampleError};
 use crate::files;
+use crate::moves::{self, Moves, MovesError};
 use crate::pack::InputFile;
 use crate::retarget::{RetargetError, retarget};
 use crate::rig::{MAX_JOINTS, Rig, RigError};
+use crate::robot::{Machine, MotionError};
 
 /// Why a clip cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -53,6 +56,28 @@ pub enum PrepareError {
         /// The cause.
         error: ResampleError,
     },
+    /// The file of a machine's motion cannot be used.
+    #[error("{}: {error}", path.display())]
+    Moves {
+        /// The file.
+        path: PathBuf,
+        /// The cause.
+        error: MovesError,
+    },
+    /// The motion is not one of the machine's.
+    #[error("{}: {error}", path.display())]
+    Motion {
+        /// The file.
+        path: PathBuf,
+        /// The cause.
+        error: MotionError,
+    },
+    /// The motion is another machine's than the pack's.
+    #[error("{}: its robot is not the pack's: leave --robot out, the pack knows its own", path.display())]
+    OtherMachine {
+        /// The file.
+        path: PathBuf,
+    },
     /// Too short to learn from or to play.
     #[error("{}: {found} frames at {fps} fps are too few, expected at least {MIN_FRAMES}", path.display())]
     TooShort {
@@ -68,7 +93,7 @@ pub enum PrepareError {
 /// Frames below which a clip is no motion.
 const MIN_FRAMES: usize = 4;
 
-/// A clip with the map of its joints.
+/// A clip with the map of its joints: of a body, or of a machine.
 #[derive(Clone, Debug)]
 pub struct Source {
     /// Where it came from.
@@ -79,11 +104,24 @@ pub struct Source {
     pub map: JointMap,
     /// Where notes are gathered.
     pub log: Option<&'static NoteLog>,
+    /// Whose motion it is, if it is a machine's.
+    pub machine: Option<Arc<Machine>>,
+    /// The file of a machine's motion, with what in it is no joint.
+    pub moves: Option<Moves>,
 }
 
 impl Source {
-    /// Reads a clip; its joints must be known, by name or through the options' map.
+    /// A body's clip that is no file.
+    pub fn new(name: impl Into<PathBuf>, clip: Clip, map: JointMap) -> Self {
+        Self { path: name.into(), clip, map, log: None, machine: None, moves: None }
+    }
+
+    /// Reads a clip; its joints must be known, by name or through the options' map. With a machine in the options it is a motion in the
+    /// machine's joints.
     pub fn read(path: &Path, options: &ReadOptions) -> Result<Self, PrepareError> {
+        if let Some(machine) = &options.machine {
+            return Self::read_moves(path, machine, options);
+        }
         let clip = clip::read_with(path, options)?;
         let (clip, note) = fewer_joints(clip, options);
         if let (Some(note), Some(log)) = (note, options.log) {
@@ -94,11 +132,31 @@ impl Source {
             path: path.to_owned(),
             joints: clip.skeleton.joints.iter().map(|j| j.name.as_str()).collect::<Vec<_>>().join(", "),
         })?;
-        Ok(Self { path: path.to_owned(), clip, map, log: options.log })
+        Ok(Self { log: options.log, ..Self::new(path, clip, map) })
     }
 
-    /// A rig of this clip's skeleton.
+    fn read_moves(path: &Path, machine: &Arc<Machine>, options: &ReadOptions) -> Result<Self, PrepareError> {
+        let refuse = |error| PrepareError::Moves { path: path.to_owned(), error };
+        let bytes = clip::contents(path)?;
+        let mut moves = moves::parse(&bytes, path, &options.moves).map_err(refuse)?;
+        if !moves.is_even() {
+            let fps = moves.fps();
+            moves = moves.resample(fps).map_err(refuse)?;
+            moves.notes.push(format!("Uneven times: brought to {fps:.2} frames a second."));
+        }
+        let clip = machine
+            .clip(&moves, options.angles)
+            .map_err(|error| PrepareError::Motion { path: path.to_owned(), error })?;
+        clip::gathered(path, &clip.notes, options)?;
+        let (map, log) = (machine.rig.map.clone(), options.log);
+        Ok(Self { path: path.to_owned(), clip, map, log, machine: Some(machine.clone()), moves: Some(moves) })
+    }
+
+    /// A rig of this clip's skeleton; of a machine its own.
     pub fn rig(&self) -> Result<Rig, PrepareError> {
+        if let Some(machine) = &self.machine {
+            return Ok(machine.rig.clone());
+        }
         Rig::new(&self.clip.skeleton, &self.map).map_err(|error| PrepareError::Rig { path: self.path.clone(), error })
     }
 
@@ -108,6 +166,12 @@ impl Source {
         let clip = self.clip.resample(fps).map_err(refuse)?;
         if clip.frames() < MIN_FRAMES {
             return Err(PrepareError::TooShort { path: self.path.clone(), found: clip.frames(), fps });
+        }
+        if self.machine.is_some() {
+            return match clip.skeleton == rig.skeleton {
+                true => Ok(clip),
+                false => Err(PrepareError::OtherMachine { path: self.path.clone() }),
+            };
         }
         let moved = retarget(&clip, &self.map, rig)
             .map_err(|error| PrepareError::Retarget { path: self.path.clone(), error })?;

@@ -172,7 +172,7 @@ fn changed_packs_are_refused_or_used_in_bounded_time_and_memory() {
     let packs: Vec<Hostile> = files.iter().map(|path| Hostile::of(&PackFile::read(path).unwrap())).collect();
     let clip = walk(&Manner::NEUTRAL, 1.0, 60.0, 0.0, 1);
     let map = JointMap::detect(&clip.skeleton).unwrap();
-    let source = Source { path: "walk".into(), clip, map, log: None };
+    let source = Source::new("walk", clip, map);
     let shown = Shown { clip: ViewClip { name: "walk".to_owned(), source, target: None } };
     let (mut loaded, mut slowest) = (0, (Duration::ZERO, 0));
     for case in 0..cases {

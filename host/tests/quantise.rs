@@ -1,6 +1,6 @@
 //! int8 networks and int16 translators: near the f32 pack on an unseen walk, refused where there is nothing to round, guarded like every pack.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use kinesic_host::clip::{Clip, JointMap};
 use kinesic_host::gait::{Manner, walk};
@@ -20,7 +20,7 @@ fn unseen(file: &PackFile, manner: &Manner) -> Clip {
     let clip = walk(manner, 6.0, 60.0, 0.0, 5);
     let map = JointMap::detect(&clip.skeleton).unwrap();
     let fps = f64::from(pack.metadata().frame_rate);
-    Source { path: PathBuf::from("made"), clip, map, log: None }.on_rig(&rig, fps).unwrap()
+    Source::new("made", clip, map).on_rig(&rig, fps).unwrap()
 }
 
 #[test]

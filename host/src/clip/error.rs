@@ -17,6 +17,16 @@ pub enum ReadError {
         /// The file.
         path: PathBuf,
     },
+    /// A motion in the joints of a machine.
+    #[error(
+        "{}: this is a motion in the joints of a robot, and no robot is given. Say which: --robot ROBOT.kin; \
+             `kinesic robot import --help` makes one from a URDF or a table of servos",
+        path.display()
+    )]
+    Machine {
+        /// The file.
+        path: PathBuf,
+    },
     /// A folder was given.
     #[error("{}: this is a folder, a clip is one file. Name a .bvh or .csv file inside it", path.display())]
     Directory {

@@ -30,10 +30,14 @@ pub static READERS: [Reader; 3] = [
     Reader { name: "glTF", extensions: &["glb", "gltf"], sniff: is_gltf, parse: gltf::read },
 ];
 
+/// The reader that knows the first bytes of a file.
+pub(super) fn sniffed(head: &[u8]) -> Option<&'static Reader> {
+    READERS.iter().find(|reader| (reader.sniff)(head))
+}
+
 /// The reader of a file: by content first, because a wrong extension is common, then by extension.
-pub(super) fn reader_of(path: &Path, bytes: &[u8]) -> Option<&'static Reader> {
-    let head = &bytes[..bytes.len().min(4096)];
-    READERS.iter().find(|reader| (reader.sniff)(head)).or_else(|| {
+pub(super) fn reader_of(path: &Path, head: &[u8]) -> Option<&'static Reader> {
+    sniffed(head).or_else(|| {
         let name = path.file_name()?.to_str()?.to_ascii_lowercase();
         let extension = name.strip_suffix(".gz").unwrap_or(&name).rsplit('.').next()?.to_owned();
         READERS.iter().find(|reader| reader.extensions.contains(&extension.as_str()))

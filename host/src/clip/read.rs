@@ -2,14 +2,17 @@
 
 use std::io::Read;
 use std::path::Path;
+use std::sync::Arc;
 
 use super::error::ReadError;
-use super::formats::reader_of;
+use super::formats::{reader_of, sniffed};
 use super::map::SkeletonMap;
 use super::notes::{NoteLog, is_assumption};
 use super::units::{Unit, UpAxis};
 use super::{Clip, kinect};
 use crate::files;
+use crate::moves;
+use crate::robot::Machine;
 
 /// What the caller knows better than the file. The default lets the reader find out, and say so in the notes.
 #[derive(Clone, Debug, Default)]
@@ -29,6 +32,12 @@ pub struct ReadOptions {
     pub strict: bool,
     /// Where notes are gathered, see [`NoteLog`].
     pub log: Option<&'static NoteLog>,
+    /// The machine whose motions the files hold, instead of a body's.
+    pub machine: Option<Arc<Machine>>,
+    /// What angles of a machine's motions are counted in, where the file does not say it.
+    pub angles: Option<moves::Unit>,
+    /// Frames per second of a machine's motions without times; an episode of a table with several.
+    pub moves: moves::Options,
     /// Joint names of a skeleton that is not among the known layouts.
     pub map: Option<SkeletonMap>,
     /// Options for recordings without a steady clock.
@@ -52,23 +61,41 @@ pub fn read(path: impl AsRef<Path>) -> Result<Clip, ReadError> {
 pub fn read_with(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Clip, ReadError> {
     let path = path.as_ref();
     let (bytes, packed) = unpacked(slurp(path)?, path)?;
-    let Some(reader) = reader_of(path, &bytes) else {
+    let head = &bytes[..bytes.len().min(HEAD)];
+    if sniffed(head).is_none() && moves::is_moves(path, head) {
+        return Err(ReadError::Machine { path: path.into() });
+    }
+    let Some(reader) = reader_of(path, head) else {
         return Err(ReadError::UnknownFormat { path: path.into(), found: describe(&bytes) });
     };
     let mut clip = (reader.parse)(&bytes, path, options)?;
     if packed {
         clip.notes.push("The file was compressed with gzip.".into());
     }
+    gathered(path, &clip.notes, options)?;
+    Ok(clip)
+}
+
+/// The content of a file, unpacked.
+pub fn contents(path: &Path) -> Result<Vec<u8>, ReadError> {
+    Ok(unpacked(slurp(path)?, path)?.0)
+}
+
+/// Gathers the notes of a file, or refuses what was assumed where that is asked for.
+pub fn gathered(path: &Path, notes: &[String], options: &ReadOptions) -> Result<(), ReadError> {
     if options.strict
-        && let Some(note) = clip.notes.iter().find(|note| is_assumption(note))
+        && let Some(note) = notes.iter().find(|note| is_assumption(note))
     {
         return Err(ReadError::Assumed { path: path.into(), note: note.clone() });
     }
     if let Some(log) = options.log {
-        log.add(path, &clip.notes);
+        log.add(path, notes);
     }
-    Ok(clip)
+    Ok(())
 }
+
+/// Bytes by which a kind of file is told.
+const HEAD: usize = 4096;
 
 /// Most bytes that a compressed file may hold: a small one can claim a lot.
 const MOST: u64 = 1 << 31;

@@ -7,10 +7,12 @@ use kinesic::Pack;
 use kinesic::engine::Controls;
 use kinesic::model::ModelMeta;
 use kinesic_host::clip::{Clip, Memory};
+use kinesic_host::limit::{self, Clamps};
 use kinesic_host::pack::PackFile;
 use kinesic_host::prepare::Source;
 use kinesic_host::quality::{self, Quality};
 use kinesic_host::rig::{MAX_JOINTS, MAX_ROWS, Rig};
+use kinesic_host::robot::Machine;
 use kinesic_host::translate::{self, TIMING_STRENGTH, Timing};
 use kinesic_host::{components, engines};
 use miette::{IntoDiagnostic, miette};
@@ -18,14 +20,15 @@ use serde::Serialize;
 
 use super::clips::Reading;
 use super::mask;
-use super::output::{check_motion, print_json, spinner};
+use super::output::{check_motion, print_clamps, print_json, spinner, write_motion};
 
 /// Play a clip through a pack, frame by frame as the device would, and write the result
 ///
 /// For packs of translators and of style components.
 ///
 /// The clip may have another skeleton and frame rate than the pack: it is put on the pack's skeleton, and the result is
-/// written on that skeleton, at the pack's frame rate: BVH in centimetres, glTF in metres.
+/// written on that skeleton, at the pack's frame rate: BVH in centimetres, glTF in metres. A robot's motion is a file of its joints, and so
+/// is the result: what its servos take. Where the pack holds limits, they are the last stage, as on the device.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -34,18 +37,20 @@ Examples:
   kinesic apply angry.kin walk.bvh --out angry-walk.glb
   kinesic apply angry.kin walk.bvh --out arms-only.bvh --mask '*=0,LeftArm+=1,r_shoulder+=1'
   kinesic apply child.kin jump.csv --out child-jump.bvh --timing learned
-  kinesic apply components.kin --stored --out stored.bvh")]
+  kinesic apply components.kin --stored --out stored.bvh
+  kinesic apply lively-robot.kin nod.json --out lively-nod.json --strength 0.7")]
 pub struct Args {
     /// Pack to play
     #[arg(value_name = "PACK.kin")]
     pack: PathBuf,
-    /// Clip to play (BVH or Kinect CSV)
+    /// Clip to play (BVH, glTF, Kinect CSV; of a robot CSV, JSON, YAML)
     #[arg(value_name = "CLIP", required_unless_present = "stored")]
     clip: Option<PathBuf>,
     /// Play the motion that a pack of style components stores, instead of a clip
     #[arg(long, conflicts_with = "clip")]
     stored: bool,
-    /// Motion to write, in the format that its name says: .bvh, .glb or .gltf (glTF 2.0), .csv (joint angles)
+    /// Motion to write, in the format that its name says: .bvh, .glb or .gltf (glTF 2.0), .csv (joint angles); of a robot .csv, .json,
+    /// .jsonl, .yaml
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
     /// 0 = the clip itself, 1 = the style as learned, beyond = exaggerated
@@ -78,13 +83,18 @@ struct Summary {
     out: String,
     frames: usize,
     frame_rate: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
     source: Option<Quality>,
-    styled: Quality,
+    /// A robot has no feet.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    styled: Option<Quality>,
+    /// What the pack's limits did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    limits: Option<Clamps>,
 }
 
 /// Runs the command.
 pub fn run(args: &Args) -> miette::Result<()> {
-    check_motion(&args.out)?;
     if !args.strength.is_finite() {
         return Err(miette!("--strength {}: expected a number, usually from 0 to 1", args.strength));
     }
@@ -99,6 +109,8 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let file = PackFile::read(&args.pack).into_diagnostic()?;
     let pack = file.pack().into_diagnostic()?;
     let rig = Rig::from_pack(&pack).into_diagnostic()?;
+    let machine = Machine::from_pack(&pack).into_diagnostic()?;
+    check_motion(&args.out, machine.is_some())?;
     let mut controls = Controls { strength: args.strength, ..Controls::default() };
     let mut weights = [1.0; MAX_JOINTS];
     mask::apply(&args.mask, &rig, 1.0, &mut weights)?;
@@ -106,23 +118,23 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let bar = spinner();
     bar.set_message("playing");
     let fps = f64::from(pack.metadata().frame_rate);
-    let clip = match &args.clip {
-        Some(path) => {
-            let source = Source::read(path, &args.reading.options()?).into_diagnostic()?;
-            Some(source.on_rig(&rig, fps).into_diagnostic()?)
-        }
-        None => None,
-    };
+    let options = args.reading.options_for(&pack)?;
+    let source = args.clip.as_ref().map(|path| Source::read(path, &options)).transpose().into_diagnostic()?;
+    let clip = source.as_ref().map(|source| source.on_rig(&rig, fps)).transpose().into_diagnostic()?;
     let played = play(args, &pack, &rig, clip.as_ref(), controls)?;
-    let styled = played.clip;
-    styled.write(&args.out).into_diagnostic()?;
+    let (styled, limits) = match limit::play(&pack, &rig, &played.clip).into_diagnostic()? {
+        Some((clip, clamps)) => (clip, Some(clamps)),
+        None => (played.clip, None),
+    };
+    write_motion(&args.out, &styled, machine.as_ref(), source.as_ref().and_then(|source| source.moves.as_ref()))?;
     bar.finish_and_clear();
     let summary = Summary {
         out: args.out.display().to_string(),
         frames: styled.frames(),
         frame_rate: fps,
-        source: clip.as_ref().map(|clip| quality::measure(clip, &rig.map)),
-        styled: quality::measure(&styled, &rig.map),
+        source: clip.as_ref().filter(|_| machine.is_none()).map(|clip| quality::measure(clip, &rig.map)),
+        styled: machine.is_none().then(|| quality::measure(&styled, &rig.map)),
+        limits,
     };
     if args.json {
         return print_json(&summary);
@@ -131,11 +143,14 @@ pub fn run(args: &Args) -> miette::Result<()> {
     if !(low..=high).contains(&args.strength) {
         println!("note: strength {} is outside the plausible range of this pack, {low} to {high}", args.strength);
     }
-    println!("            foot slide, cm/s   jerk, m/s^3");
-    let rows = summary.source.iter().map(|q| ("source", q)).chain([("styled", &summary.styled)]);
+    if summary.styled.is_some() {
+        println!("            foot slide, cm/s   jerk, m/s^3");
+    }
+    let rows = summary.source.iter().map(|q| ("source", q)).chain(summary.styled.iter().map(|q| ("styled", q)));
     for (name, q) in rows {
         println!("{name:<10} {:>17.1} {:>13.1}", q.foot_slide_cm_s, q.jerk_m_s3);
     }
+    summary.limits.iter().for_each(print_clamps);
     println!("{}: {} frames at {fps} a second", summary.out, summary.frames);
     Ok(())
 }

@@ -2,12 +2,16 @@
 
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use clap::Args;
+use kinesic::Pack;
 use kinesic_host::clip::formats::READERS;
 use kinesic_host::clip::{NoteLog, ReadOptions, SkeletonMap, Unit, UpAxis};
-use kinesic_host::files;
+use kinesic_host::pack::PackFile;
 use kinesic_host::prepare::fingerprint;
+use kinesic_host::robot::Machine;
+use kinesic_host::{files, moves};
 use miette::{IntoDiagnostic, miette};
 
 /// How clips are read.
@@ -35,6 +39,42 @@ pub struct Reading {
     /// Refuse a file about which something would be assumed
     #[arg(long)]
     pub strict: bool,
+    /// Robot whose motions the files hold, as `kinesic robot import` makes it; a pack trained on one knows its own
+    #[arg(long, value_name = "ROBOT.kin")]
+    pub robot: Option<PathBuf>,
+    /// What a robot's angles are counted in where the file does not say it: deg, rad, ticks or us (default: as the robot's servos)
+    #[arg(long, value_name = "UNIT", value_parser = angles)]
+    pub angles: Option<moves::Unit>,
+    /// Frames per second of a robot's motion whose file has no times
+    #[arg(long, value_name = "RATE")]
+    pub rate: Option<f64>,
+    /// Which episode of a table with several (default: the first)
+    #[arg(long, value_name = "N")]
+    pub episode: Option<u64>,
+}
+
+/// A unit of angles from the command line.
+fn angles(text: &str) -> Result<moves::Unit, String> {
+    match text {
+        "deg" => Ok(moves::Unit::Degrees),
+        "rad" => Ok(moves::Unit::Radians),
+        "ticks" => Ok(moves::Unit::Ticks),
+        "us" => Ok(moves::Unit::Microseconds),
+        _ => Err("expected deg, rad, ticks or us".to_owned()),
+    }
+}
+
+/// The robot of a pack that `kinesic robot import` made, or that was trained on one.
+pub fn robot(path: &Path) -> miette::Result<Machine> {
+    let file = PackFile::read(path).into_diagnostic()?;
+    let machine = Machine::from_pack(&file.pack().into_diagnostic()?).into_diagnostic()?;
+    machine.ok_or_else(|| {
+        miette!(
+            help = "make one: kinesic robot import robot.urdf --out robot.kin",
+            "{}: found a pack without servos, expected one of a robot",
+            path.display()
+        )
+    })
 }
 
 /// Handedness of axes.
@@ -62,6 +102,9 @@ impl Reading {
             repair: self.repair,
             strict: self.strict,
             log: Some(&NOTES),
+            machine: self.robot.as_ref().map(|path| robot(path).map(Arc::new)).transpose()?,
+            angles: self.angles,
+            moves: moves::Options { rate: self.rate, episode: self.episode },
             map,
             ..ReadOptions::default()
         })
@@ -69,11 +112,20 @@ impl Reading {
 }
 
 impl Reading {
+    /// The same for clips that a pack plays: a pack of a robot says whose motions they are.
+    pub fn options_for(&self, pack: &Pack) -> miette::Result<ReadOptions> {
+        let own = Machine::from_pack(pack).into_diagnostic()?.map(Arc::new);
+        let options = self.options()?;
+        Ok(ReadOptions { machine: options.machine.clone().or(own), ..options })
+    }
+
     /// Everything here that decides what a clip becomes.
     pub fn deciding(&self) -> miette::Result<String> {
         let map = self.map.as_ref().map(|path| fingerprint(path)).transpose().into_diagnostic()?;
         let hand = self.handed == Hand::Left;
-        Ok(format!("{map:?} {:?} {:?} {hand} {:?} {}", self.units, self.up, self.root, self.repair))
+        let robot = self.robot.as_ref().map(|path| fingerprint(path)).transpose().into_diagnostic()?;
+        let moves = format!("{robot:?} {:?} {:?} {:?}", self.angles, self.rate, self.episode);
+        Ok(format!("{map:?} {:?} {:?} {hand} {:?} {} {moves}", self.units, self.up, self.root, self.repair))
     }
 }
 

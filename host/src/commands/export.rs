@@ -5,12 +5,13 @@ use std::path::PathBuf;
 use kinesic_host::clip;
 use kinesic_host::embed;
 use kinesic_host::pack::PackFile;
+use kinesic_host::prepare::Source;
 use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
 
 use super::clips::Reading;
 use super::inspect::is_pack;
-use super::output::{check_motion, check_output, print_json, write_whole};
+use super::output::{check_motion, check_output, print_json, write_motion, write_whole};
 
 /// Write a clip in another format, or a pack as Rust source
 ///
@@ -55,7 +56,8 @@ pub fn run(args: &Args) -> miette::Result<()> {
         let module = embed::rust_module(&file, &name).into_diagnostic()?;
         write_whole(&args.out, module.as_bytes())?;
     } else {
-        check_motion(&args.out)?;
+        let options = args.reading.options()?;
+        check_motion(&args.out, options.machine.is_some())?;
         if is_pack(&args.file) {
             return Err(miette!(
                 help =
@@ -64,8 +66,13 @@ pub fn run(args: &Args) -> miette::Result<()> {
                 args.file.display()
             ));
         }
-        let clip = clip::read_with(&args.file, &args.reading.options()?).into_diagnostic()?;
-        clip.write(&args.out).into_diagnostic()?;
+        if options.machine.is_some() {
+            let Source { clip, machine, moves, .. } = Source::read(&args.file, &options).into_diagnostic()?;
+            write_motion(&args.out, &clip, machine.as_deref(), moves.as_ref())?;
+        } else {
+            let clip = clip::read_with(&args.file, &options).into_diagnostic()?;
+            clip.write(&args.out).into_diagnostic()?;
+        }
     }
     let bytes = std::fs::metadata(&args.out).map_or(0, |meta| meta.len());
     let summary = Summary { out: args.out.display().to_string(), bytes };

@@ -107,5 +107,5 @@ pub fn time(option: &str, time: f64, seconds: f64, clip: &str) -> miette::Result
 
 /// Outputs that must be motions.
 pub fn outputs(paths: &[&PathBuf]) -> miette::Result<()> {
-    paths.iter().try_for_each(|path| super::output::check_motion(path))
+    paths.iter().try_for_each(|path| super::output::check_motion(path, false))
 }

@@ -10,11 +10,13 @@ use kinesic_host::files;
 use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_host::plain::line;
 use kinesic_host::rig::Rig;
+use kinesic_host::robot::Machine;
 use miette::IntoDiagnostic;
 use serde::Serialize;
 
 use super::clips::Reading;
 use super::output::print_json;
+use super::robot::table;
 
 /// Say what a clip or a pack holds, and what is wrong with it
 #[derive(Debug, clap::Args)]
@@ -109,6 +111,9 @@ struct PackReport {
     joints: Vec<String>,
     models: Vec<ModelReport>,
     tensors: Vec<(String, String, [u32; 2])>,
+    /// Of a robot: its coordinates and what their servos take.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    coordinates: Vec<table::Coordinate>,
     provenance: Option<Provenance>,
 }
 
@@ -156,6 +161,7 @@ fn pack(path: &Path, json: bool) -> miette::Result<()> {
         joints: joints.iter().map(|joint| joint.name.to_owned()).collect(),
         models: models(&pack)?,
         tensors: metadata.tensors.iter().map(|t| (t.name.to_owned(), format!("{:?}", t.kind), t.shape)).collect(),
+        coordinates: Machine::from_pack(&pack).into_diagnostic()?.map_or_else(Vec::new, |m| table::coordinates(&m)),
         provenance: file.provenance(),
     };
     if json {
@@ -174,6 +180,9 @@ fn pack(path: &Path, json: bool) -> miette::Result<()> {
                 line(&value.as_str().map_or(value.to_string(), str::to_owned))
             );
         }
+    }
+    if !report.coordinates.is_empty() {
+        table::print(&report.coordinates);
     }
     println!("tensors");
     for (name, kind, [rows, columns]) in &report.tensors {

@@ -75,14 +75,16 @@ pub struct Args {
     json: bool,
 }
 
-fn rate(text: &str) -> Result<f64, String> {
+/// A speed or an acceleration from the command line.
+pub fn rate(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(rate) if (1e-3..1e5).contains(&rate) => Ok(rate),
         _ => Err("expected a number above 0".to_owned()),
     }
 }
 
-fn frame_rate(text: &str) -> Result<f64, String> {
+/// A frame rate from the command line.
+pub fn frame_rate(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(rate) if (1.0..=1000.0).contains(&rate) => Ok(rate),
         _ => Err("expected 1 to 1000 frames a second".to_owned()),

@@ -25,6 +25,7 @@ mod output;
 mod pictures;
 mod precision;
 mod quantize;
+mod robot;
 mod score;
 mod synth;
 mod train;
@@ -72,6 +73,8 @@ enum Command {
     View(view::Args),
     Quantize(quantize::Args),
     Score(score::Args),
+    #[command(subcommand)]
+    Robot(robot::Action),
     Limits(limits::Args),
     Export(export::Args),
     Completions(completions::Args),
@@ -110,6 +113,7 @@ fn dispatch(cli: Cli) -> miette::Result<()> {
         Command::View(args) => view::run(&args),
         Command::Quantize(args) => quantize::run(&args),
         Command::Score(args) => score::run(&args),
+        Command::Robot(action) => robot::run(&action),
         Command::Limits(args) => limits::run(&args),
         Command::Export(args) => export::run(&args),
         Command::Completions(args) => completions::run(&args),

@@ -5,7 +5,10 @@ use std::path::Path;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
-use kinesic_host::clip::Format;
+use kinesic_host::clip::{Clip, Format};
+use kinesic_host::limit::{Clamps, JointClamps};
+use kinesic_host::moves::Moves;
+use kinesic_host::robot::Machine;
 use kinesic_host::{files, plain};
 use miette::{IntoDiagnostic, WrapErr, miette};
 use serde::Serialize;
@@ -36,9 +39,21 @@ pub fn check_output(path: &Path, extension: &str) -> miette::Result<()> {
     check_folder(path)
 }
 
-/// As [`check_output`], for a motion: its extension says the format.
-pub fn check_motion(path: &Path) -> miette::Result<()> {
-    if Format::of(path).is_none() {
+/// Formats of a robot's motions.
+const MOVES: [&str; 5] = ["csv", "json", "jsonl", "yaml", "yml"];
+
+/// As [`check_output`], for a motion of a body or, with `machine`, of a robot: its extension says the format.
+pub fn check_motion(path: &Path, machine: bool) -> miette::Result<()> {
+    let moves =
+        |path: &Path| path.extension().is_some_and(|found| MOVES.iter().any(|own| found.eq_ignore_ascii_case(own)));
+    if machine && !moves(path) && Format::of(path).is_none() {
+        return Err(miette!(
+            help = format!("name it {}", path.with_extension("csv").display()),
+            "{}: the output is a .csv, .json, .jsonl or .yaml file with what the servos take, or .bvh, .glb, .gltf for pictures",
+            path.display()
+        ));
+    }
+    if !machine && Format::of(path).is_none() {
         return Err(miette!(
             help = format!("name it {}", path.with_extension("bvh").display()),
             "{}: the output is a .bvh, .glb, .gltf or .csv file",
@@ -59,6 +74,32 @@ fn check_folder(path: &Path) -> miette::Result<()> {
         ));
     }
     Ok(())
+}
+
+/// Writes a motion in the format that its name says: a robot's in the numbers that its servos take, with what else was in the file that it
+/// comes from.
+pub fn write_motion(path: &Path, clip: &Clip, machine: Option<&Machine>, from: Option<&Moves>) -> miette::Result<()> {
+    let picture = Format::of(path).is_some_and(|format| format != Format::Csv);
+    match machine {
+        Some(machine) if !picture => machine.moves(clip, from).write(path).into_diagnostic(),
+        _ => clip.write(path).into_diagnostic(),
+    }
+}
+
+/// Prints what limits did to a motion.
+pub fn print_clamps(clamps: &Clamps) {
+    if clamps.joints.is_empty() {
+        println!("limits     kept in all {} frames", clamps.frames);
+        return;
+    }
+    let joint = |joint: &JointClamps| {
+        let parts = [("range", joint.position), ("rate", joint.rate)];
+        let parts: Vec<String> =
+            parts.iter().filter(|(_, count)| *count > 0).map(|(what, count)| format!("{what} {count}")).collect();
+        format!("{} ({})", plain::line(&joint.joint), parts.join(", "))
+    };
+    let joints: Vec<String> = clamps.joints.iter().map(joint).collect();
+    println!("limits     clamped in {} of {} frames: {}", clamps.clamped_frames, clamps.frames, joints.join(", "));
 }
 
 /// Prints one JSON object, with what was assumed about the clips in `reading`.

@@ -142,7 +142,7 @@ fn measure(
 ) -> miette::Result<Difference> {
     let rig = Rig::from_pack(before).into_diagnostic()?;
     let fps = f64::from(before.metadata().frame_rate);
-    let options = args.reading.options()?;
+    let options = args.reading.options_for(before)?;
     let mut clips = Vec::new();
     for (index, path) in paths.iter().enumerate() {
         say(format!("clip {} of {}", index + 1, paths.len()));

@@ -42,7 +42,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let file = PackFile::read(&args.pack).into_diagnostic()?;
     let pack = file.pack().into_diagnostic()?;
     let scorer = Scorer::load(&pack).into_diagnostic().wrap_err_with(|| args.pack.display().to_string())?;
-    let reading = args.reading.options()?;
+    let reading = args.reading.options_for(&pack)?;
     let bar = spinner();
     let mut clips = Vec::new();
     for path in clip_paths(&args.clips)? {

@@ -7,12 +7,14 @@ use kinesic::model::AttributeMeta;
 use kinesic_host::emotion::HostEmotion;
 use kinesic_host::emotion::evaluate::Scorer;
 use kinesic_host::emotion::play::{Settings, Strengths, play};
+use kinesic_host::limit::{self, Clamps};
 use kinesic_host::pack::PackFile;
 use kinesic_host::plain;
+use kinesic_host::robot::Machine;
 use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
 
-use super::output::{check_motion, print_json};
+use super::output::{check_motion, print_clamps, print_json, write_motion};
 
 /// Make a motion that shows an emotion so strongly
 ///
@@ -73,13 +75,17 @@ struct Summary {
     /// Way of the root along the ground, as the crow flies, m.
     travel_m: f64,
     attributes: Vec<Attribute>,
+    /// What the pack's limits did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    limits: Option<Clamps>,
 }
 
 /// Runs the command.
 pub fn run(args: &Args) -> miette::Result<()> {
-    check_motion(&args.out)?;
     let file = PackFile::read(&args.pack).into_diagnostic()?;
     let pack = file.pack().into_diagnostic()?;
+    let machine = Machine::from_pack(&pack).into_diagnostic()?;
+    check_motion(&args.out, machine.is_some())?;
     let emotion = HostEmotion::load(&pack).into_diagnostic()?;
     let meta = *emotion.meta();
     let attributes: Vec<AttributeMeta> = meta.attributes.into_iter().flatten().collect();
@@ -98,7 +104,12 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let played = play(&pack, &Settings { from, to, fps, seconds: args.seconds }).into_diagnostic()?;
     let scorer = Scorer::load(&pack).into_diagnostic()?;
     let scores = [scorer.made(&pack, &from).into_diagnostic()?, scorer.made(&pack, &to).into_diagnostic()?];
-    played.clip.write(&args.out).into_diagnostic()?;
+    let rig = &scorer.rig;
+    let (clip, limits) = match limit::play(&pack, rig, &played.clip).into_diagnostic()? {
+        Some((clip, clamps)) => (clip, Some(clamps)),
+        None => (played.clip.clone(), None),
+    };
+    write_motion(&args.out, &clip, machine.as_ref(), None)?;
 
     let both = |of: [Strengths; 2], at: usize| of.map(|strengths| strengths[at]);
     let travel = match (played.clip.root.first(), played.clip.root.last()) {
@@ -125,6 +136,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
                 plausible: attribute.strength,
             })
             .collect(),
+        limits,
     };
     if args.json {
         return print_json(&summary);
@@ -166,6 +178,7 @@ fn print(summary: &Summary) {
         summary.seconds,
         summary.travel_m
     );
+    summary.limits.iter().for_each(print_clamps);
     println!("attribute            asked             played             scores     of plausible");
     let two = |[a, b]: [f32; 2]| format!("{a:.3} .. {b:.3}");
     let scores = |[a, b]: [f64; 2]| format!("{a:.3} .. {b:.3}");

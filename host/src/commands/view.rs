@@ -122,7 +122,8 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let alone = shown.emotions.is_empty() && shown.faces.is_empty();
     if !packs.is_empty() || !clips.is_empty() || alone {
         shown.packs = if packs.is_empty() { own_packs() } else { packs };
-        shown.clips = if clips.is_empty() { vec![made_walk(args.seed)?] } else { read_clips(&clips, args)? };
+        shown.clips =
+            if clips.is_empty() { vec![made_walk(args.seed)?] } else { read_clips(&clips, args, &shown.packs)? };
     }
     bar.set_message("playing");
     let packs = [&shown.packs, &shown.emotions, &shown.face_packs].into_iter().flatten();
@@ -176,8 +177,11 @@ fn read_packs(paths: &[PathBuf]) -> miette::Result<Vec<ViewPack>> {
     paths.iter().map(read).collect()
 }
 
-fn read_clips(paths: &[PathBuf], args: &Args) -> miette::Result<Vec<ViewClip>> {
-    let options = args.reading.options()?;
+fn read_clips(paths: &[PathBuf], args: &Args, packs: &[ViewPack]) -> miette::Result<Vec<ViewClip>> {
+    let options = match packs.first() {
+        Some(pack) => args.reading.options_for(&pack.file.pack().into_diagnostic()?)?,
+        None => args.reading.options()?,
+    };
     let read = |path: &Path| Source::read(path, &options).into_diagnostic();
     let mut targets = args.target.iter();
     paths
@@ -195,7 +199,7 @@ fn made_walk(seed: u64) -> miette::Result<ViewClip> {
         let seconds = SECONDS * Manner::NEUTRAL.cadence / manner.cadence;
         let clip = walk(manner, seconds, 60.0, 0.3, seed);
         let map = JointMap::detect(&clip.skeleton).ok_or_else(|| miette!("the made skeleton is not known"))?;
-        Ok::<_, miette::Report>(Source { path: PathBuf::from(name), clip, map, log: None })
+        Ok::<_, miette::Report>(Source::new(name, clip, map))
     };
     let seeds = seed.wrapping_mul(1000);
     Ok(ViewClip {

@@ -5,17 +5,20 @@
 //! | `joint` | [`JointLimit`]: the limits of one joint |
 //! | `rows` | [`Tables`]: the limits of every coordinate, as the device reads them |
 //! | `onto` | limits in the coordinates of a pack that has engines |
+//! | `play` | a motion through the limits of its pack |
 //! | `table` | [`Table`]: for people and other programs |
 //! | `onto_body` | limits of a body from a robot's description |
 
 mod joint;
 mod onto;
 pub mod onto_body;
+mod play;
 mod rows;
 mod table;
 
 pub use joint::{HeightLimit, JointLimit};
 pub use onto::Mismatch;
+pub use play::{Clamps, JointClamps, play};
 pub use rows::Tables;
 pub use table::{Entry, Height, Table};
 

@@ -6,15 +6,18 @@
 //! | `urdf` | [`Robot::parse`]: from a URDF |
 //! | `servos` | [`ServoTable`]: ids, units, zeros, bounds of servos |
 //! | `machine` | [`Machine`]: a robot as packs hold it: rig, limits, servos |
+//! | `motion` | a motion in the numbers of a file -> coordinates -> what the servos take |
 //! | `error` | [`RobotError`]: place, what was found, what to do |
 
 mod description;
 mod error;
 mod machine;
+mod motion;
 mod servos;
 mod urdf;
 
 pub use description::{Mimic, Motion, Robot, RobotJoint};
 pub use error::RobotError;
 pub use machine::{Defaults, Machine, Servo};
+pub use motion::MotionError;
 pub use servos::{POSE, PoseEntry, ServoEntry, ServoTable, UNITS, unit_name};

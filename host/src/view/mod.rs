@@ -234,7 +234,7 @@ mod tests {
         let mut clip = walk(&Manner::NEUTRAL, 0.5, 60.0, 0.0, 1);
         clip.skeleton.joints[3].name = HOSTILE.to_owned();
         let map = crate::clip::JointMap::detect(&walk(&Manner::NEUTRAL, 0.5, 60.0, 0.0, 1).skeleton).unwrap();
-        let source = Source { path: HOSTILE.into(), clip, map, log: None };
+        let source = Source::new(HOSTILE, clip, map);
         let shown = View {
             packs: vec![ViewPack { name: HOSTILE.to_owned(), file: models::weary() }],
             clips: vec![ViewClip { name: HOSTILE.to_owned(), source, target: None }],

@@ -50,7 +50,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let report = evaluate(&pack, &rig, &provenance.metrics).into_diagnostic()?;
     let target = match &args.target {
         Some(path) => {
-            let clip = Source::read(path, &args.reading.options()?).into_diagnostic()?;
+            let clip = Source::read(path, &args.reading.options_for(&pack)?).into_diagnostic()?;
             let clip = clip.on_rig(&rig, FRAME_RATE).into_diagnostic()?;
             Some(to_clip(&pack, &rig, &clip).into_diagnostic()?)
         }

@@ -64,7 +64,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let attributes: Vec<Attribute> =
         names.iter().map(|name| known(name).unwrap_or_else(|| Attribute::from_column(name))).collect();
     let rows = labels::read(&args.labels, &attributes).into_diagnostic()?;
-    let reading = args.reading.options()?;
+    let reading = args.reading.options_for(&pack)?;
     let bar = spinner();
     let all = rows.len();
     let progress = |index: usize| bar.set_message(format!("reading clip {} of {all}", index + 1));

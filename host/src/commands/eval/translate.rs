@@ -47,7 +47,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
         .provenance()
         .ok_or_else(|| miette!("{}: its provenance, which holds the baselines, cannot be read", args.pack.display()))?;
     let rig = Rig::from_pack(&pack).into_diagnostic()?;
-    let options = args.reading.options()?;
+    let options = args.reading.options_for(&pack)?;
     let fps = f64::from(pack.metadata().frame_rate);
     let bar = spinner();
     let mut clips = Vec::new();

@@ -133,7 +133,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let report = evaluate(&preview.pack().into_diagnostic()?, &rig, &provenance.metrics).into_diagnostic()?;
     let to_style = to_clip(&preview.pack().into_diagnostic()?, &rig, &style).into_diagnostic()?;
     provenance.metrics.extend(measured(&report));
-    let bytes = trained.model.pack(&rig, &provenance);
+    let bytes = session.of_robot(trained.model.pack(&rig, &provenance), &reading, &provenance)?;
     let file = session.write(&bytes)?;
     let page = page(&trained, &report, &to_style, &curve, [&content, &style], &rig, &file)?;
     let summary = Summary {

@@ -139,7 +139,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
             ]
         }));
     }
-    let bytes = trained.model.pack(&trained.rig, &provenance);
+    let bytes = session.of_robot(trained.model.pack(&trained.rig, &provenance), &reading, &provenance)?;
     let file = session.write(&bytes)?;
     let page = page(&trained, &training, unseen.as_ref(), &distances, &scorer, &kept, &pack)?;
     let summary = Summary {

@@ -3,8 +3,10 @@
 use std::path::Path;
 
 use indicatif::ProgressBar;
+use kinesic_host::clip::ReadOptions;
 use kinesic_host::pack::{InputFile, PackFile, Provenance};
 use kinesic_host::report::Report;
+use miette::IntoDiagnostic;
 use serde::Serialize;
 
 use super::report::ReportArgs;
@@ -55,6 +57,13 @@ impl<'a> Session<'a> {
             notes,
             ..Provenance::default()
         }
+    }
+
+    /// The pack with the robot's limits and servos, where the clips are a robot's.
+    pub fn of_robot(&self, bytes: Vec<u8>, reading: &ReadOptions, provenance: &Provenance) -> miette::Result<Vec<u8>> {
+        let Some(machine) = &reading.machine else { return Ok(bytes) };
+        let file = PackFile::from_bytes(&bytes);
+        machine.pack(Some(&file.pack().into_diagnostic()?), provenance).into_diagnostic()
     }
 
     /// Writes the pack.

@@ -185,6 +185,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let report = evaluate(&pack, &rig, &trained.baselines, Some(&turns), &named).into_diagnostic()?;
     provenance.metrics = metrics(&trained, &report);
     let bytes = args.precision.of(trained.model.pack(&rig, &provenance), &provenance)?;
+    let bytes = session.of_robot(bytes, &options, &provenance)?;
     let file = session.write(&bytes)?;
     let page = page(&trained, &report, &named[0], &rig, &file)?;
     let summary = Summary::new(args, &trained, &report, bytes.len(), fps);

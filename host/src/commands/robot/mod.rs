@@ -1,0 +1,19 @@
+//! `kinesic robot`.
+
+mod import;
+pub mod table;
+
+use clap::Subcommand;
+
+/// Robots: from a description or a table of servos to a pack that commands and firmware know
+#[derive(Debug, Subcommand)]
+pub enum Action {
+    Import(import::Args),
+}
+
+/// Runs the subcommand.
+pub fn run(action: &Action) -> miette::Result<()> {
+    match action {
+        Action::Import(args) => import::run(args),
+    }
+}

@@ -1,0 +1,109 @@
+//! What every format is checked for, once it is columns of numbers.
+
+use super::{Channel, Extra, Format, Moves, MovesError, Options, Unit};
+
+/// Angles beyond this are no radians: two turns.
+const TURNS: f64 = 4.0 * std::f64::consts::PI;
+
+/// A motion on its way.
+pub(super) struct Draft {
+    pub format: Format,
+    pub channels: Vec<Channel>,
+    /// s; `None` for a file that says no times.
+    pub times: Option<Vec<f64>>,
+    /// Frames per second that the file says.
+    pub fps: Option<f64>,
+    pub values: Vec<f64>,
+    pub extra: Extra,
+    pub notes: Vec<String>,
+    /// How a frame is named in messages: `line 3`, `frame 2`.
+    pub place: Box<dyn Fn(usize) -> String>,
+}
+
+impl Draft {
+    /// The motion, or what is wrong with it.
+    pub fn finish(self, options: &Options) -> Result<Moves, MovesError> {
+        if self.channels.is_empty() {
+            return Err(MovesError::new(
+                "",
+                "found no column of numbers, expected one per joint",
+                "name joints in the header",
+            ));
+        }
+        for (index, channel) in self.channels.iter().enumerate() {
+            if self.channels[..index].iter().any(|other| other.name == channel.name) {
+                let what = format!("found the joint {} twice", super::error::shown(&channel.name));
+                return Err(MovesError::new("", what, "name every joint once"));
+            }
+        }
+        let frames = self.values.len() / self.channels.len();
+        if frames < 2 {
+            return Err(MovesError::new(
+                "",
+                format!("found {frames} frames, expected at least 2"),
+                "is the file whole?",
+            ));
+        }
+        let times = self.clock(frames, options)?;
+        for (index, channel) in self.channels.iter().enumerate().filter(|(_, c)| c.unit == Some(Unit::Radians)) {
+            let values = self.values.iter().skip(index).step_by(self.channels.len());
+            if let Some((frame, value)) = values.enumerate().find(|(_, value)| value.abs() > TURNS) {
+                let what = format!("joint '{}': found {value} rad, expected at most two turns, 12.57", channel.name);
+                let help =
+                    format!("these look like degrees: name the column {}_deg, or say the unit as deg", channel.name);
+                return Err(MovesError::new((self.place)(frame), what, help));
+            }
+        }
+        let Self { format, channels, values, extra, notes, .. } = self;
+        Ok(Moves { format, channels, times, values, extra, notes })
+    }
+
+    /// When every frame is due, from 0 on.
+    fn clock(&self, frames: usize, options: &Options) -> Result<Vec<f64>, MovesError> {
+        let Some(times) = &self.times else {
+            let Some(fps) = self.fps.or(options.rate) else {
+                let help = "say how many frames there are in a second: --rate 50";
+                return Err(MovesError::new("", "found neither times nor a frame rate, expected one of them", help));
+            };
+            if !(1e-3..=1e5).contains(&fps) {
+                let what = format!("found the frame rate {fps}, expected a number above 0, at most 100000");
+                return Err(MovesError::new("", what, "as in 50"));
+            }
+            return Ok((0..frames).map(|frame| frame as f64 / fps).collect());
+        };
+        if times.len() != frames {
+            let what = format!("found {} times and {frames} frames, expected as many", times.len());
+            return Err(MovesError::new("", what, "is the file whole?"));
+        }
+        let first = times.first().copied().unwrap_or_default();
+        for (frame, pair) in times.windows(2).enumerate() {
+            if !(pair[0] < pair[1] && pair[1].is_finite() && pair[0].is_finite()) {
+                let what = format!("found the time {} after {}, expected times that rise", pair[1], pair[0]);
+                return Err(MovesError::new(
+                    (self.place)(frame + 1),
+                    what,
+                    "sort the frames, or cut the repeated ones out",
+                ));
+            }
+        }
+        Ok(times.iter().map(|time| time - first).collect())
+    }
+}
+
+/// Seconds in one of what a name of times counts; `None` for a name of no time.
+pub(super) fn time_unit(name: &str) -> Option<f64> {
+    let plain: String = name.trim().to_lowercase().chars().map(|c| if c.is_alphanumeric() { c } else { '_' }).collect();
+    match plain.trim_matches('_') {
+        "time" | "t" | "time_s" | "time_sec" | "timestamp" | "timestamp_s" | "seconds" | "sec" | "secs" | "stamp"
+        | "time_from_start" | "time_stamp" => Some(1.0),
+        "time_ms" | "timestamp_ms" | "ms" | "milliseconds" | "millis" | "t_ms" | "stamp_ms" => Some(1e-3),
+        "time_us" | "timestamp_us" | "microseconds" | "micros" => Some(1e-6),
+        "time_ns" | "timestamp_ns" | "stamp_ns" | "ns" | "nanoseconds" => Some(1e-9),
+        _ => None,
+    }
+}
+
+/// A name that counts frames and is no joint.
+pub(super) fn is_index(name: &str) -> bool {
+    matches!(name.trim().to_lowercase().as_str(), "frame" | "frame_index" | "index" | "" | "unnamed: 0")
+}
