@@ -136,6 +136,15 @@ impl<'a, E: Engine<ROWS>, const ROWS: usize> Pipeline<'a, E, ROWS> {
         }
     }
 
+    /// The same for coordinates: where a machine stands when it is switched on. What is not sound is ignored.
+    pub fn start_coordinates(&self, state: &mut PipelineState<E::State, ROWS>, coordinates: &[f32]) {
+        let frame = Frame::from_coordinates(coordinates);
+        if frame.is_sound() {
+            (state.source, state.shown) = (frame, frame);
+            self.engine.start(&mut state.engine, &frame);
+        }
+    }
+
     /// One frame: `pose` in, or `None` where none came; `out` is what goes out. Infallible. Cost: the engine's, and about 250
     /// multiply-adds per joint for the rig.
     ///

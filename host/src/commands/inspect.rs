@@ -7,11 +7,12 @@ use kinesic::model::{JointMeta, MAGIC, ModelMeta, VERSION};
 use kinesic_host::clip::{self, JointMap};
 use kinesic_host::engines::known;
 use kinesic_host::files;
+use kinesic_host::moves::Summary;
 use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_host::plain::line;
 use kinesic_host::rig::Rig;
 use kinesic_host::robot::Machine;
-use miette::IntoDiagnostic;
+use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
 
 use super::clips::Reading;
@@ -25,6 +26,7 @@ Examples:
   kinesic inspect walk.bvh
   kinesic inspect angry.kin --json
   kinesic inspect mine.bvh --map my-skeleton.toml
+  kinesic inspect nod.csv --robot desk.kin
 
 A skeleton map names the joints of a skeleton that is not known (canonical name = name in the file):
   units = \"cm\"
@@ -34,7 +36,7 @@ A skeleton map names the joints of a skeleton that is not known (canonical name 
   r_hip = \"thigh.R\"
 Canonical names: pelvis spine chest neck head, and with l_ or r_: collar shoulder elbow wrist hip knee ankle toe")]
 pub struct Args {
-    /// A clip (BVH, Kinect CSV) or a pack (.kin)
+    /// A clip (BVH, glTF, Kinect CSV), a motion of a robot (CSV, JSON, YAML) or a pack (.kin)
     #[arg(value_name = "FILE")]
     file: PathBuf,
     /// Print one JSON object
@@ -46,7 +48,15 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(args: &Args) -> miette::Result<()> {
-    if is_pack(&args.file) { pack(&args.file, args.json) } else { clip(args) }
+    if is_pack(&args.file) {
+        return pack(&args.file, args.json);
+    }
+    let options = clip::ReadOptions { log: None, ..args.reading.options()? };
+    let machine = options.machine.is_some();
+    match clip::contents(&args.file) {
+        Ok(bytes) if machine || clip::is_moves(&args.file, &bytes) => moves(args, &bytes, options),
+        _ => clip(args, &options),
+    }
 }
 
 /// By name, or by content: a damaged pack should be refused as a pack.
@@ -69,10 +79,51 @@ struct ClipReport {
     canonical: Vec<(&'static str, String)>,
 }
 
-fn clip(args: &Args) -> miette::Result<()> {
-    // The notes are printed below.
-    let options = clip::ReadOptions { log: None, ..args.reading.options()? };
-    let clip = clip::read_with(&args.file, &options).into_diagnostic()?;
+#[derive(Serialize)]
+struct MovesReport {
+    file: String,
+    #[serde(flatten)]
+    summary: Summary,
+    /// What the robot makes of it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    robot: Vec<String>,
+}
+
+/// A motion in the joints of a robot: as the file has it, and with a robot what was assumed on the way to its coordinates.
+fn moves(args: &Args, bytes: &[u8], options: clip::ReadOptions) -> miette::Result<()> {
+    let found = kinesic_host::moves::parse(bytes, &args.file, &options.moves)?;
+    let mut robot = Vec::new();
+    if let Some(machine) = &options.machine {
+        let clip = machine.clip(&found, options.angles).map_err(|error| miette!("{}: {error}", args.file.display()))?;
+        robot.push(format!("Fits the robot '{}': {} coordinates.", machine.name, machine.servos.len()));
+        robot.extend(clip.notes.iter().skip(found.notes.len()).cloned());
+    }
+    let report = MovesReport { file: args.file.display().to_string(), summary: found.summary(), robot };
+    if args.json {
+        return print_json(&report);
+    }
+    let s = &report.summary;
+    let clock = if s.even { "" } else { ", uneven" };
+    println!("{}: {} frames at {:.2} a second{clock}, {:.2} s", report.file, s.frames, s.fps, s.duration_s);
+    println!("{:<24} {:<8} {:>12} {:>12} {:>14}", "joint", "unit", "least", "greatest", "fastest, 1/s");
+    for c in &s.channels {
+        let unit = c.unit.unwrap_or("?");
+        println!("{}", line(&format!("{:<24} {unit:<8} {:>12.4} {:>12.4} {:>14.3}", c.name, c.min, c.max, c.speed)));
+    }
+    if !s.extra.is_empty() {
+        println!("beside     {}", line(&s.extra.join(", ")));
+    }
+    for note in s.notes.iter().chain(&report.robot) {
+        println!("note: {}", line(note));
+    }
+    if s.channels.iter().any(|c| c.unit.is_none()) && report.robot.is_empty() {
+        println!("note: the file names no unit for some joints; with a robot its own are assumed (--robot, --angles)");
+    }
+    Ok(())
+}
+
+fn clip(args: &Args, options: &clip::ReadOptions) -> miette::Result<()> {
+    let clip = clip::read_with(&args.file, options).into_diagnostic()?;
     let map = JointMap::choose(&clip.skeleton, options.map.as_ref()).into_diagnostic()?;
     let name = |joint: usize| clip.skeleton.joints[joint].name.clone();
     let known = |map: &JointMap| {

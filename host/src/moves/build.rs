@@ -1,5 +1,7 @@
 //! What every format is checked for, once it is columns of numbers.
 
+use std::collections::{HashMap, HashSet};
+
 use super::{Channel, Extra, Format, Moves, MovesError, Options, Unit};
 
 /// Angles beyond this are no radians: two turns.
@@ -22,7 +24,8 @@ pub(super) struct Draft {
 
 impl Draft {
     /// The motion, or what is wrong with it.
-    pub fn finish(self, options: &Options) -> Result<Moves, MovesError> {
+    pub fn finish(mut self, options: &Options) -> Result<Moves, MovesError> {
+        self.tell_apart();
         if self.channels.is_empty() {
             return Err(MovesError::new(
                 "",
@@ -30,11 +33,10 @@ impl Draft {
                 "name joints in the header",
             ));
         }
-        for (index, channel) in self.channels.iter().enumerate() {
-            if self.channels[..index].iter().any(|other| other.name == channel.name) {
-                let what = format!("found the joint {} twice", super::error::shown(&channel.name));
-                return Err(MovesError::new("", what, "name every joint once"));
-            }
+        let mut known = HashSet::new();
+        if let Some(channel) = self.channels.iter().find(|channel| !known.insert(channel.name.as_str())) {
+            let what = format!("found the joint {} twice", super::error::shown(&channel.name));
+            return Err(MovesError::new("", what, "name every joint once"));
         }
         let frames = self.values.len() / self.channels.len();
         if frames < 2 {
@@ -56,6 +58,17 @@ impl Draft {
         }
         let Self { format, channels, values, extra, notes, .. } = self;
         Ok(Moves { format, channels, times, values, extra, notes })
+    }
+
+    /// A place and an angle of one name keep their units in it: `Hips_z_m`, `Hips_z_deg`.
+    fn tell_apart(&mut self) {
+        let mut units: HashMap<String, HashSet<Option<Unit>>> = HashMap::new();
+        for channel in &self.channels {
+            units.entry(channel.name.clone()).or_default().insert(channel.unit);
+        }
+        for channel in self.channels.iter_mut().filter(|channel| units[&channel.name].len() > 1) {
+            channel.name = channel.header();
+        }
     }
 
     /// When every frame is due, from 0 on.

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 /// What the numbers of a channel count.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Unit {
     /// rad.
@@ -75,7 +75,11 @@ impl Channel {
 
     /// As a header: `pan_deg`, or `pan` without a unit.
     pub fn header(&self) -> String {
-        self.unit.map_or_else(|| self.name.clone(), |unit| format!("{}_{}", self.name, unit.name()))
+        match self.unit.map(Unit::name) {
+            // A name that tells it from another one has its unit.
+            Some(unit) if !self.name.ends_with(&format!("_{unit}")) => format!("{}_{unit}", self.name),
+            _ => self.name.clone(),
+        }
     }
 }
 

@@ -73,6 +73,8 @@ pub struct Robot {
     pub name: String,
     /// Its joints.
     pub joints: Vec<RobotJoint>,
+    /// What was assumed or left out beside the joints, one sentence each.
+    pub notes: Vec<String>,
 }
 
 impl Robot {

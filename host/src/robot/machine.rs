@@ -81,7 +81,7 @@ struct Part {
 impl Machine {
     /// A machine of all movable joints of a description. `table` says what their servos are, and gives tighter bounds; it may be empty.
     pub fn of_robot(robot: &Robot, table: &ServoTable, fps: f64, defaults: Defaults) -> Result<Self, RobotError> {
-        let mut notes = Vec::new();
+        let mut notes = robot.notes.clone();
         let mut parts = vec![base(robot.root().as_deref().unwrap_or("base"))];
         let mut of_joint = vec![0; robot.joints.len()];
         for at in robot.depth_first() {

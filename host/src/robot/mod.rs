@@ -3,7 +3,8 @@
 //! | file | holds |
 //! |---|---|
 //! | `description` | [`Robot`]: joints in a tree, in the frame of the root link |
-//! | `urdf` | [`Robot::parse`]: from a URDF |
+//! | `urdf` | [`Robot::read`], [`Robot::parse`]: from a URDF |
+//! | `mjcf` | the same from an MJCF (MuJoCo) |
 //! | `servos` | [`ServoTable`]: ids, units, zeros, bounds of servos |
 //! | `machine` | [`Machine`]: a robot as packs hold it: rig, limits, servos |
 //! | `motion` | a motion in the numbers of a file -> coordinates -> what the servos take |
@@ -12,6 +13,7 @@
 mod description;
 mod error;
 mod machine;
+mod mjcf;
 mod motion;
 mod servos;
 mod urdf;

@@ -47,6 +47,21 @@ pub enum MotionError {
         /// What would do.
         expected: &'static str,
     },
+    /// A unit that was assumed, and cannot be right.
+    #[error(
+        "joint '{joint}': the file names no unit, and taken as the robot's own, {unit}, {count} of {frames} frames are outside its range. Say \
+         what angles are counted in: --angles deg, or name the column {joint}_deg"
+    )]
+    Assumed {
+        /// Which joint.
+        joint: String,
+        /// The unit that was assumed.
+        unit: &'static str,
+        /// Frames outside.
+        count: usize,
+        /// Of how many.
+        frames: usize,
+    },
     /// Numbers that fit in degrees only.
     #[error(
         "joint '{joint}': found values from {low} to {high} {unit}, its range is {from:.3} to {to:.3} {unit}: these look like degrees. Say so with \
@@ -87,7 +102,11 @@ impl Machine {
             let to = Conversion::new(servo, unit)?;
             let raw = || moves.values.iter().skip(column).step_by(moves.channels.len());
             let found: Vec<f64> = raw().map(|x| to.coordinate(*x)).collect();
-            fits(servo, unit, raw().copied(), &found, *range, &mut notes)?;
+            let outside = fits(servo, unit, raw().copied(), &found, *range, &mut notes)?;
+            if told.is_none() && 2 * outside > found.len() {
+                let (joint, unit, frames) = (servo.name.clone(), unit_name(servo.unit), found.len());
+                return Err(MotionError::Assumed { joint, unit, count: outside, frames });
+            }
             values.iter_mut().skip(at).step_by(self.servos.len()).zip(found).for_each(|(to, x)| *to = x);
         }
         if !assumed.is_empty() {
@@ -195,7 +214,8 @@ impl Servo {
         let columns = ([0], [self.unit as u16], [self.scale], [self.zero]);
         let servos = Servos::new(&columns.0, &columns.1, &columns.2, &columns.3);
         let command = servos.ok().and_then(|servos| servos.command(0, coordinate));
-        command.map_or(f64::NAN, |command| f64::from(command.value))
+        // The double that prints as the single does.
+        command.map_or(f64::NAN, |command| command.value.to_string().parse().unwrap_or(f64::NAN))
     }
 }
 
@@ -234,7 +254,7 @@ impl Conversion {
     }
 }
 
-/// Refuses numbers that fit as degrees only, and says which leave the range.
+/// Refuses numbers that fit as degrees only, and says which leave the range; the number of frames that do.
 fn fits(
     servo: &Servo,
     unit: Unit,
@@ -242,7 +262,7 @@ fn fits(
     found: &[f64],
     [lower, upper]: [f64; 2],
     notes: &mut Vec<String>,
-) -> Result<(), MotionError> {
+) -> Result<usize, MotionError> {
     let margin = OUTSIDE.max(0.05 * (upper - lower));
     let outside = |x: &f64| !(lower - margin..=upper + margin).contains(x);
     let count = found.iter().filter(|x| outside(x)).count();
@@ -262,7 +282,7 @@ fn fits(
             found.len()
         ));
     }
-    Ok(())
+    Ok(count)
 }
 
 fn frame(coordinates: &[f64]) -> HostFrame {

@@ -15,7 +15,7 @@ use std::path::Path;
 pub use error::MapError;
 pub use file::SkeletonMap;
 pub use partners::mirror_partners;
-pub(crate) use suggest::nearest;
+pub use suggest::nearest;
 
 use super::Skeleton;
 

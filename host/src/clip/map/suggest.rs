@@ -1,7 +1,7 @@
 //! "Did you mean": the nearest spelling.
 
 /// The candidate with the fewest edits (case does not count), if few enough to be a slip.
-pub(crate) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<String> {
+pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<String> {
     let lower = word.to_lowercase();
     let all = candidates.into_iter().map(|c| (edits(&lower, &c.to_lowercase()), c));
     let (edits, best) = all.min_by_key(|&(e, _)| e)?;

@@ -17,7 +17,7 @@ use crate::commands::output::{check_output, print_json, write_whole};
 
 /// Make a robot's pack: every movable joint, its limits, and the numbers that its servo takes
 ///
-/// From a description (URDF) or, where there is none, from a table of servos (TOML) alone. The pack is what the other commands take as
+/// From a description (URDF, or MJCF of MuJoCo) or, where there is none, from a table of servos (TOML) alone. The pack is what the other commands take as
 /// --robot; a style trained with it holds it too. Followers (mimic) have no coordinate of their own, and fixed joints are folded away.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
@@ -43,7 +43,7 @@ A table of servos; numbers are in the servo's own unit (rad, deg, m, mm, ticks, 
 More keys: rest; without a description: parent, offset (m), axis (Z up). A platform that its own firmware solves is a [[pose]]: name, min, max
 (six numbers each: x, y, z in m, roll, pitch, yaw in rad). The page 'Put it on a robot' explains them.")]
 pub struct Args {
-    /// A robot: .urdf, or a table of servos .toml
+    /// A robot: .urdf, .xml (MJCF), or a table of servos .toml
     #[arg(value_name = "FILE")]
     file: PathBuf,
     /// Table of servos of a robot with a description
@@ -107,7 +107,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     inputs.extend(args.servos.as_ref().map(|path| fingerprint(path)).transpose()?);
     let robot = match is_table {
         true => None,
-        false => Some(Robot::parse(&text(&args.file)?).map_err(in_file)?),
+        false => Some(Robot::read(&args.file)?),
     };
     if let Some(path) = &args.zero_from {
         let moves = moves::read(path, &moves::Options { rate: Some(args.fps), episode: None }).into_diagnostic()?;

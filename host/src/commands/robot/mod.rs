@@ -1,6 +1,7 @@
 //! `kinesic robot`.
 
 mod import;
+mod show;
 pub mod table;
 
 use clap::Subcommand;
@@ -9,11 +10,13 @@ use clap::Subcommand;
 #[derive(Debug, Subcommand)]
 pub enum Action {
     Import(import::Args),
+    Show(show::Args),
 }
 
 /// Runs the subcommand.
 pub fn run(action: &Action) -> miette::Result<()> {
     match action {
         Action::Import(args) => import::run(args),
+        Action::Show(args) => show::run(args),
     }
 }

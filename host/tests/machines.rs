@@ -1,0 +1,249 @@
+//! Robots from the command line: from a table of servos or a URDF and motions of their joints to what servos take.
+
+#[path = "../../tests/tests/common/servos.rs"]
+#[allow(unreachable_pub)]
+mod servos;
+
+use std::path::Path;
+use std::process::Command;
+
+use kinesic::{LimitState, Limiter, Pipeline, PipelineState, Servos, Translator, TranslatorState};
+use kinesic_host::moves::{self, Options};
+use kinesic_host::pack::PackFile;
+use kinesic_host::robot::{Defaults, Machine, Robot, ServoTable};
+use servos::{FPS, antennas};
+
+/// The head with two antennas: ticks, ticks the other way, degrees about 90, pulses.
+const TABLE: &str = r#"
+name = "desk robot"
+[[servo]]
+name = "pan"
+id = 11
+unit = "ticks"
+per_turn = 4096
+zero = 2048
+min = 800
+max = 3300
+speed = 9000
+acceleration = 90000
+[[servo]]
+name = "tilt"
+parent = "pan"
+id = 12
+unit = "ticks"
+per_turn = 4096
+zero = 2048
+sign = -1
+min = 1300
+max = 2800
+speed = 9000
+acceleration = 90000
+axis = [0, 1, 0]
+[[servo]]
+name = "left antenna"
+parent = "tilt"
+id = 3
+unit = "deg"
+zero = 90
+min = 0
+max = 180
+speed = 600
+acceleration = 9000
+[[servo]]
+name = "right antenna"
+parent = "tilt"
+id = 4
+unit = "us"
+per_turn = 4000
+zero = 1500
+min = 700
+max = 2300
+speed = 6600
+acceleration = 99000
+"#;
+
+fn kinesic(folder: &Path, args: &[&str]) -> Result<String, String> {
+    let output = Command::new(env!("CARGO_BIN_EXE_kinesic")).args(args).current_dir(folder).output().unwrap();
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    // Wrapped for a terminal.
+    let error = text(&output.stderr).replace('│', " ").split_whitespace().collect::<Vec<_>>().join(" ");
+    if output.status.success() { Ok(text(&output.stdout)) } else { Err(error) }
+}
+
+/// A motion in degrees, with a light that is no joint.
+fn table(rows: &[Vec<f64>], names: &[&str]) -> String {
+    let mut text =
+        format!("time_s,{},light\n", names.iter().map(|name| format!("{name}_deg")).collect::<Vec<_>>().join(","));
+    for (frame, row) in rows.iter().enumerate() {
+        let cells: Vec<String> = row.iter().map(|x| format!("{:.6}", x.to_degrees())).collect();
+        text += &format!("{},{},{}\n", frame as f64 / FPS, cells.join(","), if frame % 50 < 45 { "on" } else { "off" });
+    }
+    text
+}
+
+#[test]
+fn a_mood_learned_from_a_robot_s_own_recordings_ends_in_servo_positions_with_the_device_s_bits() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let machine = antennas();
+    let names: Vec<&str> = machine.servos.iter().map(|servo| servo.name).collect();
+    for (seed, seconds) in [(1, 40.0), (2, 40.0), (77, 20.0)] {
+        let [calm, lively] = machine.take(seed, seconds);
+        std::fs::write(at.join(format!("calm{seed}.csv")), table(&calm, &names)).unwrap();
+        std::fs::write(at.join(format!("lively{seed}.csv")), table(&lively, &names)).unwrap();
+    }
+    std::fs::write(at.join("desk.toml"), TABLE).unwrap();
+    kinesic(at, &["robot", "import", "desk.toml", "--out", "desk.kin"]).unwrap();
+    let pairs = ["--pair", "calm1.csv", "lively1.csv", "--pair", "calm2.csv", "lively2.csv"];
+    kinesic(
+        at,
+        &[&["train", "translate", "--robot", "desk.kin", "--out", "lively.kin", "--no-report"], &pairs[..]].concat(),
+    )
+    .unwrap();
+
+    // An unseen take: every servo within a degree and a half, and far better than doing nothing.
+    let text =
+        kinesic(at, &["eval", "translate", "lively.kin", "--pair", "calm77.csv", "lively77.csv", "--json"]).unwrap();
+    let report: serde_json::Value = serde_json::from_str(&text).unwrap();
+    for (before, after) in
+        [("identity", "error")].map(|(a, b)| (&report["degrees"][a]["joints"], &report["degrees"][b]["joints"]))
+    {
+        for (before, after) in before.as_array().unwrap().iter().zip(after.as_array().unwrap()).skip(1) {
+            let [before, after] = [before, after].map(|joint| joint["angle"].as_f64().unwrap());
+            assert!(after < 1.5 && after < 0.25 * before, "{before} {after}: {text}");
+        }
+    }
+
+    // What is written is what the device tells its servos, light and all.
+    let text = kinesic(at, &["apply", "lively.kin", "calm77.csv", "--out", "out.csv", "--strength", "0.7"]).unwrap();
+    assert!(text.contains("limits"), "{text}");
+    let written = moves::read(&at.join("out.csv"), &Options::default()).unwrap();
+    assert_eq!(written.extra.columns, ["light"]);
+    assert_eq!(written.extra.rows[46][0], "off");
+    let file = PackFile::read(&at.join("lively.kin")).unwrap();
+    let pack = file.pack().unwrap();
+    let pipeline = Pipeline::<(Translator<2, 256>, Limiter<2>), 2>::load(&pack).unwrap();
+    let servos = Servos::load(&pack).unwrap();
+    let told = Machine::from_pack(&pack).unwrap().unwrap();
+    let source = moves::read(&at.join("calm77.csv"), &Options::default()).unwrap();
+    let clip = told.clip(&source, None).unwrap();
+    let mut state: PipelineState<(TranslatorState<2, 256>, LimitState<2>), 2> = PipelineState::new();
+    state.engine.0.controls.strength = 0.7;
+    let mut out = [0.0; 4];
+    for frame in 0..clip.frames() {
+        let coordinates: Vec<f32> = clip.coordinates(frame).unwrap()[..4].iter().map(|x| *x as f32).collect();
+        if frame == 0 {
+            pipeline.start_coordinates(&mut state, &coordinates);
+        }
+        pipeline.step_coordinates(&mut state, Some(&coordinates), &mut out);
+        for (command, written) in servos.commands(&out).zip(written.frame(frame)) {
+            assert_eq!(command.value, *written as f32, "frame {frame}, servo {}", command.id);
+        }
+    }
+    assert_eq!(servos.commands(&out).map(|command| command.id).collect::<Vec<_>>(), [11, 12, 3, 4]);
+}
+
+#[test]
+fn a_description_becomes_a_machine_of_all_its_moving_joints() {
+    let urdf = r#"<robot name="odd">
+      <link name="base"/> <link name="a"/> <link name="b"/> <link name="c"/> <link name="d"/> <link name="e"/> <link name="f"/>
+      <joint name="yaw" type="continuous"><parent link="base"/><child link="a"/><axis xyz="0 0 1"/><limit effort="1" velocity="3"/></joint>
+      <joint name="plate" type="fixed"><parent link="a"/><child link="b"/><origin xyz="0 0 0.1" rpy="0.785398 0 0"/></joint>
+      <joint name="canted" type="revolute"><parent link="b"/><child link="c"/><origin xyz="0.1 0 0"/><axis xyz="0 0.7 0.714142"/>
+        <limit lower="-1" upper="2" velocity="4" effort="1"/></joint>
+      <joint name="rail" type="prismatic"><parent link="c"/><child link="d"/><axis xyz="1 0 0"/><limit lower="0" upper="0.3" velocity="0.2" effort="1"/></joint>
+      <joint name="claw" type="revolute"><parent link="d"/><child link="e"/><axis xyz="0 1 0"/><limit lower="0" upper="1" velocity="2" effort="1"/></joint>
+      <joint name="other claw" type="revolute"><parent link="d"/><child link="f"/><axis xyz="0 1 0"/><mimic joint="claw" multiplier="-1"/>
+        <limit lower="-1" upper="0" velocity="2" effort="1"/></joint>
+    </robot>"#;
+    let robot = Robot::parse(urdf).unwrap();
+    let machine = Machine::of_robot(&robot, &ServoTable::default(), 50.0, Defaults::default()).unwrap();
+    let names: Vec<&str> = machine.servos.iter().map(|servo| servo.name.as_str()).collect();
+    assert_eq!(names, ["yaw", "canted", "rail", "claw"]);
+    // A continuous joint counts its turns.
+    assert_eq!(machine.ranges(), [[-100.0, 100.0], [-1.0, 2.0], [0.0, f64::from(0.3f32)], [0.0, 1.0]]);
+    assert!(
+        machine.notes.iter().any(|note| note.contains("other claw") && note.contains("follows 'claw'")),
+        "{:?}",
+        machine.notes
+    );
+    assert!(machine.notes.iter().any(|note| note.contains("yaw: no bounds")), "{:?}", machine.notes);
+    // What is fixed is folded away: the pack's joints stand where the description's do, and turn about the same axes.
+    let skeleton = &machine.rig.skeleton;
+    let frames = robot.frames();
+    let poses = machine.rig.clip_of(&[Default::default()], 1.0);
+    let places = poses.positions(0);
+    for name in names {
+        let (own, other) = (places[skeleton.find(name).unwrap()], frames[robot.find(name).unwrap()].translation.vector);
+        // Z up to Y up.
+        assert!(
+            (own.x - other.x).abs() + (own.y - other.z).abs() + (own.z + other.y).abs() < 1e-6,
+            "{name}: {own} {other}"
+        );
+    }
+    // The pack gives the machine back.
+    let file = PackFile::from_bytes(&machine.pack(None, &Default::default()).unwrap());
+    let back = Machine::from_pack(&file.pack().unwrap()).unwrap().unwrap();
+    assert_eq!((&back.servos, &back.limits), (&machine.servos, &machine.limits));
+}
+
+#[test]
+fn sliders_and_turns_are_played_as_they_are() {
+    let table =
+        "[[servo]]\nname = \"lift\"\nunit = \"mm\"\nmin = 0\nmax = 200\n[[servo]]\nname = \"reel\"\nunit = \"deg\"\n";
+    let machine = Machine::of_table(&ServoTable::parse(table).unwrap(), 50.0, Defaults::default()).unwrap();
+    let text: String =
+        (0..60).map(|t| format!("{},{},{}\n", t as f64 / 50.0, 100.0 + t as f64, 30.0 * t as f64)).collect();
+    let moves = moves::parse(format!("t,lift_mm,reel_deg\n{text}").as_bytes(), Path::new("m.csv"), &Options::default())
+        .unwrap();
+    let clip = machine.clip(&moves, None).unwrap();
+    let back = machine.moves(&clip, Some(&moves));
+    for (a, b) in back.values.iter().zip(&moves.values) {
+        assert!((a - b).abs() < 1e-3, "{a} {b}");
+    }
+    // Almost five turns.
+    assert!(moves.values.last().unwrap() > &1700.0);
+}
+
+#[test]
+fn what_does_not_fit_is_refused_with_joint_found_and_expected() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    std::fs::write(at.join("desk.toml"), TABLE).unwrap();
+    kinesic(at, &["robot", "import", "desk.toml", "--out", "desk.kin"]).unwrap();
+    let inspect = |name: &str, text: &str| {
+        std::fs::write(at.join(name), text).unwrap();
+        kinesic(at, &["inspect", name, "--robot", "desk.kin"])
+    };
+    let rows = "0,1,2,3,4\n0.02,1,2,3,4\n";
+    let refused = inspect("a.csv", &format!("t,pan_deg,tilt_deg,left_antenna_deg,elbow_deg\n{rows}")).unwrap_err();
+    assert!(refused.contains("right antenna") && refused.contains("elbow"), "{refused}");
+    let refused = inspect("b.csv", &format!("t,pan,tilt,left_antenna,right_antenna\n{rows}")).unwrap_err();
+    assert!(refused.contains("'pan'") && refused.contains("ticks") && refused.contains("--angles deg"), "{refused}");
+    let refused =
+        inspect("c.csv", &format!("t,pan_mm,tilt_deg,left_antenna_deg,right_antenna_deg\n{rows}")).unwrap_err();
+    assert!(refused.contains("'pan'") && refused.contains("millimetres"), "{refused}");
+    // Named as people do, in the servos' own numbers.
+    let fits = "0,2100,2000,91,1500\n0.02,2110,2000,92,1510\n";
+    let text = inspect("d.csv", &format!("t,Pan,TILT,left-antenna,rightAntenna\n{fits}")).unwrap();
+    assert!(text.contains("Fits the robot 'desk robot'") && text.contains("names no unit"), "{text}");
+    // A robot's motion without a robot, and a body's clip for a robot.
+    let alone = kinesic(at, &["export", "d.csv", "--out", "x.bvh"]).unwrap_err();
+    assert!(alone.contains("--robot ROBOT.kin"), "{alone}");
+    for (table, words) in [
+        ("[[servo]]\nname = \"a\"\n", ["'a'", "no unit"]),
+        ("[[servo]]\nname = \"a\"\nunit = \"furlong\"\n", ["furlong", "ticks"]),
+        ("[[servo]]\nname = \"a\"\nunit = \"ticks\"\n", ["per_turn", "nothing"]),
+        ("[[servo]]\nname = \"a\"\nunit = \"deg\"\nmin = 4\nmax = 1\n", ["max", "more than min"]),
+        (
+            "[[servo]]\nname = \"a\"\nid = 1\nunit = \"deg\"\n[[servo]]\nname = \"b\"\nid = 1\nunit = \"deg\"\n",
+            ["'b'", "id 1"],
+        ),
+        ("[[servo]]\nname = \"a\"\nunit = \"deg\"\nspeeed = 1\n", ["speeed", "speed"]),
+    ] {
+        std::fs::write(at.join("bad.toml"), table).unwrap();
+        let refused = kinesic(at, &["robot", "import", "bad.toml", "--out", "bad.kin"]).unwrap_err();
+        assert!(words.iter().all(|word| refused.contains(word)), "{table}: {refused}");
+        assert!(refused.contains("bad.toml") && !at.join("bad.kin").exists(), "{refused}");
+    }
+}
