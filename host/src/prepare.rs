@@ -70,7 +70,7 @@ pub enum PrepareError {
         /// The file.
         path: PathBuf,
         /// The cause.
-        error: MotionError,
+        error: Box<MotionError>,
     },
     /// The motion is another machine's than the pack's.
     #[error("{}: its robot is not the pack's: leave --robot out, the pack knows its own", path.display())]
@@ -146,7 +146,7 @@ impl Source {
         }
         let clip = machine
             .clip(&moves, options.angles)
-            .map_err(|error| PrepareError::Motion { path: path.to_owned(), error })?;
+            .map_err(|error| PrepareError::Motion { path: path.to_owned(), error: Box::new(error) })?;
         clip::gathered(path, &clip.notes, options)?;
         let (map, log) = (machine.rig.map.clone(), options.log);
         Ok(Self { path: path.to_owned(), clip, map, log, machine: Some(machine.clone()), moves: Some(moves) })

@@ -75,11 +75,27 @@ fn folder() -> tempfile::TempDir {
     }
     std::fs::remove_dir_all(folder.path().join("made")).unwrap();
     face(folder.path());
+    robot(folder.path());
     let (emotion, rig) = kinesic_host::emotion::synthetic::model(2);
     std::fs::write(folder.path().join("moods.kin"), emotion.pack(&rig, &Provenance::default())).unwrap();
     std::os::unix::fs::symlink(repository().join("models").canonicalize().unwrap(), folder.path().join("models"))
         .unwrap();
     folder
+}
+
+/// A table of two servos, and moves of them: calm and lively, and an idle one.
+fn robot(folder: &Path) {
+    let servo = |name: &str| format!("[[servo]]\nname = \"{name}\"\nunit = \"deg\"\nmin = -90\nmax = 90\n");
+    std::fs::write(folder.join("desk.toml"), format!("name = \"desk\"\n{}{}", servo("pan"), servo("tilt"))).unwrap();
+    for (name, size, late, phase) in [("calm", 15.0, 0.0, 0.0), ("lively", 22.0, 0.1, 0.0), ("idle", 15.0, 0.0, 1.0)] {
+        let at = |t: f64, pace: f64| size * ((t - late + phase) * pace).sin() * ((t + phase) * 0.7).cos();
+        let row = |frame: usize| {
+            let t = frame as f64 / 50.0;
+            format!("{t},{},{}\n", at(t, 2.1), at(t, 3.3))
+        };
+        let rows: String = (0..600).map(row).collect();
+        std::fs::write(folder.join(format!("{name}.csv")), format!("time_s,pan_deg,tilt_deg\n{rows}")).unwrap();
+    }
 }
 
 /// A table of labelled faces, `smile.kin` made of it, and a picture `me.jpg` with its landmarks.

@@ -181,3 +181,26 @@ fn no_bytes_make_it_panic() {
         }
     }
 }
+
+#[test]
+fn lines_are_the_file_s_own() {
+    for (text, line) in [
+        ("t,pan_deg\n0,1\n# a pause\n\n1,x\n2,3\n", "line 5"),
+        ("# head\nt,pan_deg\n0,1\n1,2\n2,x", "line 5"),
+        ("t,pan_deg\n0,1\n1,2\n2,x\n", "line 4"),
+    ] {
+        let error = parse(text.as_bytes(), Path::new("a.csv"), &Options::default()).unwrap_err().to_string();
+        assert!(error.contains(line), "{text}: {error}");
+    }
+}
+
+#[test]
+fn members_of_the_first_record_alone_are_no_bomb() {
+    let many: String = (0..4000).map(|key| format!(",\"k{key}\":\"\"")).collect();
+    let rest: String = (1..12_000).map(|t| format!(",{{\"t\":{t},\"p\":1}}")).collect();
+    let text = format!("[{{\"t\":0,\"p\":1{many}}}{rest}]");
+    let error = parse(text.as_bytes(), Path::new("a.json"), &Options::default()).unwrap_err().to_string();
+    assert!(error.contains("frame 0") && error.contains("4002"), "{error}");
+    let nothing = of("a.csv", CSV).slice(0..0);
+    assert_eq!(nothing.resample(50.0).unwrap().frames(), 0);
+}

@@ -169,9 +169,9 @@ fn records(all: &[Value], format: Format, path: &Path, options: &Options) -> Res
         .filter(|(key, value)| value.is_number() && !is_clock(key) && !is_index(key))
         .map(|(key, _)| key)
         .collect();
-    let mut extra = Extra::default();
-    extra.columns =
-        first.iter().filter(|(key, value)| !value.is_number() && !is_clock(key)).map(|(key, _)| key.clone()).collect();
+    let others = first.iter().filter(|(key, value)| !value.is_number() && !is_clock(key));
+    let mut extra = Extra { columns: others.map(|(key, _)| key.clone()).collect(), ..Extra::default() };
+    bounded(&extra.columns, first, all)?;
     let (mut times, mut values) = (Vec::new(), Vec::new());
     for (at, record) in all.iter().enumerate() {
         let member = |key: &str| {
@@ -198,6 +198,17 @@ fn records(all: &[Value], format: Format, path: &Path, options: &Options) -> Res
     let times = clock.is_some().then_some(times);
     Draft { format, channels, times, fps: None, values, extra, notes: Vec::new(), place: Box::new(place) }
         .finish(options)
+}
+
+/// Refuses records of which the first has many more members than the others: every frame would hold what only the first says.
+pub(super) fn bounded(columns: &[String], first: &Map<String, Value>, all: &[Value]) -> Result<(), MovesError> {
+    let said: usize = all.iter().filter_map(Value::as_object).map(Map::len).sum();
+    if columns.len() * all.len() > 8 * said + 1000 {
+        let what =
+            format!("found {} members in the first of {} frames, of which the others have few", first.len(), all.len());
+        return Err(MovesError::new("frame 0", what, "take what does not belong to every frame out of it"));
+    }
+    Ok(())
 }
 
 /// LeRobot's records: `timestamp`, `episode_index`, `action` or `observation.state` as lists.

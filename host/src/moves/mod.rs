@@ -173,7 +173,7 @@ impl Moves {
         let first = self.times.get(start).copied().unwrap_or_default();
         Self {
             times: self.times[start..end].iter().map(|time| time - first).collect(),
-            values: self.values[start * width..end * width].to_vec(),
+            values: self.values.get(start * width..end * width).unwrap_or(&[]).to_vec(),
             extra: Extra { rows: self.extra.rows.get(start..end).unwrap_or(&[]).to_vec(), ..self.extra.clone() },
             ..self.clone()
         }

@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Rotation3};
 use serde_json::{Map, Value, json};
 
 use super::build::Draft;
-use super::json::finite;
+use super::json::{bounded, finite};
 use super::{Channel, Extra, Format, Moves, MovesError, Options, Unit};
 
 /// The channels, in order.
@@ -58,6 +58,9 @@ pub(super) fn parse(whole: &Map<String, Value>, options: &Options) -> Result<Mov
     };
     let others = targets.first().and_then(Value::as_object).into_iter().flatten().map(|(key, _)| key);
     extra.columns = others.filter(|key| !OWN.contains(&key.as_str())).cloned().collect();
+    if let Some(first) = targets.first().and_then(Value::as_object) {
+        bounded(&extra.columns, first, targets)?;
+    }
     let mut turned = [0.0; 3];
     let yawless = targets.first().is_some_and(|target| target.get("body_yaw").is_none());
     for (frame, target) in targets.iter().enumerate() {

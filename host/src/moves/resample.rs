@@ -11,6 +11,9 @@ impl Moves {
             let what = format!("found the frame rate {fps}, expected a number above 0, at most 100000");
             return Err(MovesError::new("", what, "as in 50"));
         }
+        if self.frames() == 0 {
+            return Ok(self.clone());
+        }
         let end = self.times.last().copied().unwrap_or_default();
         let count = (end * fps + 1e-6).floor() + 1.0;
         Memory::check(self.frames(), count, self.channels.len()).map_err(|memory| {

@@ -61,14 +61,15 @@ pub(super) fn parse(text: &str, path: &Path, options: &Options) -> Result<Moves,
         return Err(MovesError::new("line 1", what, "put a header above them, as in time_s,pan_deg,tilt_deg"));
     }
     let mut rows: Vec<(u64, csv::StringRecord)> = Vec::new();
-    for record in reader.records() {
-        let record = record.map_err(refuse)?;
-        let line = record.position().map_or(0, csv::Position::line);
+    let mut record = csv::StringRecord::new();
+    while reader.read_record(&mut record).map_err(refuse)? {
+        // Where the reader is now: a record's own position is that before the comments above it.
+        let line = reader.position().line() - u64::from(!reader.is_done() || text.ends_with('\n'));
         if record.len() != names.len() {
             let what = format!("found {} cells, expected {}, as in the header", record.len(), names.len());
             return Err(MovesError::new(format!("line {line}"), what, "is the line whole?"));
         }
-        rows.push((line, record));
+        rows.push((line, record.clone()));
     }
     if rows.is_empty() {
         return Err(MovesError::new("", "found a header without rows, expected frames below it", "is the file whole?"));
@@ -105,8 +106,8 @@ fn columns(
                 Column::Time(seconds)
             }
             _ if is_index(name) => Column::Index,
-            // Most of it is text.
-            _ if 2 * numbers <= rows.len() => Column::Extra,
+            // Hardly a number in it: text.
+            _ if numbers == 0 || 10 * numbers < rows.len() => Column::Extra,
             _ => Column::Joint(Channel::from_header(name)),
         });
     }

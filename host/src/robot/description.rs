@@ -136,6 +136,15 @@ impl Robot {
         frames.into_iter().flatten().collect()
     }
 
+    /// The frame of every link in the root link's: the root link itself, then the link that each joint moves, in the joints' order.
+    /// `values` as [`placed`](Self::placed) takes them; joints beyond them are at 0.
+    pub fn link_frames(&self, values: &[f64]) -> Vec<(String, Isometry3<f64>)> {
+        let root = self.root().unwrap_or_else(|| "root".to_owned());
+        let frames = self.placed(&|at| values.get(at).copied().unwrap_or(0.0));
+        let moved = self.joints.iter().zip(frames).map(|(joint, frame)| (joint.child.clone(), frame));
+        std::iter::once((root, Isometry3::identity())).chain(moved).collect()
+    }
+
     /// The value of every joint: `own` of those that lead, `multiplier x + offset` of those that follow one, also by way of others.
     pub fn followed(&self, own: &[f64]) -> Vec<f64> {
         let mut values = own.to_vec();

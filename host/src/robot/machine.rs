@@ -179,7 +179,7 @@ impl Machine {
                     end: None,
                 },
                 reference: UnitQuaternion::identity(),
-                axis: servo.axis.unwrap_or_else(|| Vector3::z()),
+                axis: servo.axis.unwrap_or_else(Vector3::z),
                 kind: if slider { JointKind::Slider } else { JointKind::Hinge },
                 bounds: [None, None],
                 speed: None,

@@ -180,7 +180,7 @@ fn entries<'t>(table: &'t Table, key: &str) -> Result<Vec<(String, &'t Table)>, 
 
 /// Refuses a key that means nothing.
 fn known(place: &str, table: &Table, all: &[&str]) -> Result<(), RobotError> {
-    for key in table.keys().filter(|key| !all.contains(&key.as_str())) {
+    if let Some(key) = table.keys().find(|key| !all.contains(&key.as_str())) {
         let near = nearest(key, all.iter().copied()).map_or(String::new(), |near| format!("; did you mean '{near}'?"));
         let what = format!("found the key '{key}'{near}");
         return Err(RobotError::new(place, what, format!("expected: {}", all.join(", "))));

@@ -62,6 +62,9 @@ struct Body {
     notes: Vec<String>,
 }
 
+/// An element whose children are still to be looked at: it, its body, the frame within that, the class around it.
+type Open<'a> = (usize, Option<usize>, Isometry3<f64>, Option<&'a str>);
+
 struct Found {
     bodies: Vec<Body>,
 }
@@ -72,8 +75,7 @@ impl Reader<'_> {
         let mut bodies: Vec<Body> = Vec::new();
         let mut names = HashSet::new();
         let mut unnamed = 0;
-        // Elements whose children are still to be looked at: element, body, frame within it, class around it.
-        let mut open: Vec<(usize, Option<usize>, Isometry3<f64>, Option<&str>)> = Vec::new();
+        let mut open: Vec<Open> = Vec::new();
         let worlds = self.source.sections("worldbody").into_iter().rev();
         open.extend(worlds.map(|at| (at, None, Isometry3::identity(), self.source.get(at, "childclass"))));
         while let Some((at, body, frame, class)) = open.pop() {
