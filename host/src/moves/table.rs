@@ -1,5 +1,6 @@
 //! Tables: CSV by joint name, LeRobot's tables with lists in cells, ROS trajectories as CSV.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use serde_json::Value;
@@ -43,6 +44,8 @@ fn number(cell: &str, separator: char) -> Option<f64> {
 
 /// Reads a table.
 pub(super) fn parse(text: &str, path: &Path, options: &Options) -> Result<Moves, MovesError> {
+    // A last line without its end would be counted as the line before.
+    let text = &if text.ends_with('\n') { Cow::Borrowed(text) } else { Cow::Owned(format!("{text}\n")) };
     let header = text.lines().find(|line| !line.trim().is_empty() && !line.starts_with('#')).unwrap_or("");
     let separator = separator(header);
     let mut reader = csv::ReaderBuilder::new()
@@ -64,7 +67,7 @@ pub(super) fn parse(text: &str, path: &Path, options: &Options) -> Result<Moves,
     let mut record = csv::StringRecord::new();
     while reader.read_record(&mut record).map_err(refuse)? {
         // Where the reader is now: a record's own position is that before the comments above it.
-        let line = reader.position().line() - u64::from(!reader.is_done() || text.ends_with('\n'));
+        let line = reader.position().line() - 1;
         if record.len() != names.len() {
             let what = format!("found {} cells, expected {}, as in the header", record.len(), names.len());
             return Err(MovesError::new(format!("line {line}"), what, "is the line whole?"));
