@@ -158,7 +158,7 @@ fn make(args: &Args) -> miette::Result<()> {
         let path = path.to_owned();
         move |error: RobotError| error.in_file(&path)
     };
-    let robot = Robot::parse(&read(&args.file)?).map_err(within(&args.file))?;
+    let robot = Robot::read(&args.file)?;
     let known = RobotMap::parse(&read(map)?).map_err(within(map))?;
     let base = skeleton_of(args, skeleton)?;
     let rates = Rates { velocity: args.velocity, acceleration: args.acceleration };

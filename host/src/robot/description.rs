@@ -46,6 +46,8 @@ pub struct RobotJoint {
     pub kind: String,
     /// The link that it moves.
     pub child: String,
+    /// Centre of mass of that link, in its frame, m, where it is given.
+    pub centre: Option<Vector3<f64>>,
     /// The joint that moves the link on which this one sits; none on the root link.
     pub parent: Option<usize>,
     /// Its frame in that joint's.
@@ -69,8 +71,12 @@ pub struct RobotJoint {
 pub struct Robot {
     /// Name of the robot.
     pub name: String,
+    /// Name of the root link.
+    pub root: String,
     /// Its joints.
     pub joints: Vec<RobotJoint>,
+    /// What was assumed or left out, one sentence each.
+    pub notes: Vec<String>,
 }
 
 impl Robot {
@@ -132,7 +138,7 @@ impl Robot {
 
 impl RobotJoint {
     /// What a value moves, in the joint's own frame.
-    fn moved(&self, value: f64) -> Isometry3<f64> {
+    pub(super) fn moved(&self, value: f64) -> Isometry3<f64> {
         match self.motion {
             Motion::Revolute | Motion::Continuous => Isometry3::rotation(self.axis * value),
             Motion::Prismatic => Isometry3::from_parts((self.axis * value).into(), UnitQuaternion::identity()),

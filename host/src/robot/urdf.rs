@@ -6,122 +6,70 @@
 use std::collections::{HashMap, HashSet};
 
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
-use roxmltree::{Document, Node};
+use roxmltree::Node;
 
+use super::xml::{Xml, child, numbers};
 use super::{Mimic, Motion, Robot, RobotError, RobotJoint};
 
-impl Robot {
-    /// Reads the text of a URDF.
-    pub fn parse(text: &str) -> Result<Self, RobotError> {
-        crowded(text)?;
-        let document = Document::parse(text).map_err(|error| {
-            RobotError::new(
-                format!("line {}", error.pos().row),
-                format!("not XML: {error}"),
-                "expected a URDF; `check_urdf FILE` of liburdfdom-tools finds the same error",
-            )
-        })?;
-        let root = document.root_element();
-        let ends: Vec<usize> = text.match_indices('\n').map(|(at, _)| at).collect();
-        let line = |node: Node| 1 + ends.partition_point(|end| *end < node.range().start) as u32;
-        if let Some(node) = root.descendants().find(|node| node.tag_name().namespace().is_some_and(is_xacro)) {
-            return Err(RobotError::new(
-                format!("line {}", line(node)),
-                format!("found <xacro:{}>, expected a URDF without macros", node.tag_name().name()),
-                "expand it: xacro robot.urdf.xacro > robot.urdf",
-            ));
+/// Reads the text of a URDF.
+pub(super) fn read(xml: &Xml) -> Result<Robot, RobotError> {
+    let root = xml.document.root_element();
+    let line = |node: Node| xml.line(node);
+    let elements = |name: &'static str| root.children().filter(move |node| node.has_tag_name(name));
+    let links: HashSet<&str> = elements("link").filter_map(|node| node.attribute("name")).collect();
+    let centres: HashMap<&str, Vector3<f64>> = elements("link").filter_map(centre).collect();
+    let mut lines: HashMap<String, u32> = HashMap::new();
+    let mut joints: Vec<(RobotJoint, [&str; 2])> = Vec::new();
+    for node in elements("joint") {
+        let joint = joint(node, line(node), &centres)?;
+        let place = format!("line {}, joint '{}'", joint.line, joint.name);
+        if let Some(before) = lines.insert(joint.name.clone(), joint.line) {
+            let what = format!("the name is taken by the joint of line {before}, expected one of its own");
+            return Err(RobotError::new(place, what, "rename one of the two"));
         }
-        if root.tag_name().name() != "robot" {
-            return Err(RobotError::new(
-                format!("line {}", line(root)),
-                format!("found <{}>, expected <robot>", root.tag_name().name()),
-                "a URDF is one <robot> element with links and joints; SDF and MJCF can be converted to it",
-            ));
-        }
-        let elements = |name: &'static str| root.children().filter(move |node| node.has_tag_name(name));
-        let links: HashSet<&str> = elements("link").filter_map(|node| node.attribute("name")).collect();
-        let mut lines: HashMap<String, u32> = HashMap::new();
-        let mut joints: Vec<(RobotJoint, [&str; 2])> = Vec::new();
-        for node in elements("joint") {
-            let joint = read(node, line(node))?;
-            let place = format!("line {}, joint '{}'", joint.line, joint.name);
-            if let Some(before) = lines.insert(joint.name.clone(), joint.line) {
-                let what = format!("the name is taken by the joint of line {before}, expected one of its own");
-                return Err(RobotError::new(place, what, "rename one of the two"));
+        let mut ends = [""; 2];
+        for (end, tag) in ends.iter_mut().zip(["parent", "child"]) {
+            let link = child(node, tag).and_then(|node| node.attribute("link")).ok_or_else(|| {
+                let what = format!("found no <{tag} link=\"...\"/>, expected the link's name");
+                RobotError::new(&place, what, "a joint stands between two links: name both")
+            })?;
+            if !links.contains(link) {
+                let what = format!("its {tag} link '{link}' is not in the file, which has {} links", links.len());
+                return Err(RobotError::new(place, what, format!("add <link name=\"{link}\"/> or correct the name")));
             }
-            let mut ends = [""; 2];
-            for (end, tag) in ends.iter_mut().zip(["parent", "child"]) {
-                let link = child(node, tag).and_then(|node| node.attribute("link")).ok_or_else(|| {
-                    let what = format!("found no <{tag} link=\"...\"/>, expected the link's name");
-                    RobotError::new(&place, what, "a joint stands between two links: name both")
-                })?;
-                if !links.contains(link) {
-                    let what = format!("its {tag} link '{link}' is not in the file, which has {} links", links.len());
-                    return Err(RobotError::new(
-                        place,
-                        what,
-                        format!("add <link name=\"{link}\"/> or correct the name"),
-                    ));
-                }
-                *end = link;
-            }
-            joints.push((joint, ends));
+            *end = link;
         }
-        if joints.is_empty() {
-            return Err(RobotError::new("<robot>", "found no joint, expected at least one", "is this the whole file?"));
-        }
-        let name = root.attribute("name").unwrap_or("robot").to_owned();
-        Ok(Self { name, joints: tree(joints)? })
+        joints.push((joint, ends));
     }
-}
-
-/// Attributes of an element at most. The XML reader compares each with all others of its element.
-const ATTRIBUTES: usize = 1000;
-
-/// Refuses an element with more attributes than any robot's.
-fn crowded(text: &str) -> Result<(), RobotError> {
-    let skipped = [("!--", "-->"), ("![CDATA[", "]]>"), ("?", "?>")];
-    let mut at = 0;
-    while let Some(open) = text[at..].find('<') {
-        at += open + 1;
-        let rest = &text[at..];
-        if let Some((_, end)) = skipped.iter().find(|(begin, _)| rest.starts_with(begin)) {
-            at += rest.find(end).unwrap_or(rest.len());
-            continue;
-        }
-        let start = at;
-        let (mut quote, mut values) = (None, 0);
-        for byte in rest.bytes() {
-            at += 1;
-            match (quote, byte) {
-                (None, b'>') => break,
-                (None, b'"' | b'\'') => quote = Some(byte),
-                (Some(open), byte) if open == byte => (quote, values) = (None, values + 1),
-                _ => {}
-            }
-            if values > ATTRIBUTES {
-                let line = 1 + text[..start].matches('\n').count();
-                return Err(RobotError::new(
-                    format!("line {line}"),
-                    format!("found an element with more than {ATTRIBUTES} attributes, expected a URDF"),
-                    "its elements have ten attributes at most: is this the right file?",
-                ));
-            }
-        }
+    if joints.is_empty() {
+        return Err(RobotError::new("<robot>", "found no joint, expected at least one", "is this the whole file?"));
     }
-    Ok(())
+    let name = root.attribute("name").unwrap_or("robot").to_owned();
+    let movers: HashSet<&str> = joints.iter().map(|(_, [_, child])| *child).collect();
+    let mut roots: Vec<&str> =
+        joints.iter().map(|(_, [parent, _])| *parent).filter(|link| !movers.contains(link)).collect();
+    roots.dedup();
+    let mut notes = Vec::new();
+    if roots.len() > 1 {
+        notes.push(format!(
+            "{} links hang on nothing ({}): all are taken to be at the origin",
+            roots.len(),
+            roots.join(", ")
+        ));
+    }
+    let root = roots.first().copied().unwrap_or_default().to_owned();
+    Ok(Robot { name, root, joints: tree(joints)?, notes })
 }
 
-fn is_xacro(namespace: &str) -> bool {
-    namespace.contains("xacro")
-}
-
-fn child<'a, 'b>(node: Node<'a, 'b>, name: &str) -> Option<Node<'a, 'b>> {
-    node.children().find(|node| node.has_tag_name(name))
+/// Name of a link and its centre of mass. One that is not given, or not in numbers, moves nothing.
+fn centre<'a>(link: Node<'a, '_>) -> Option<(&'a str, Vector3<f64>)> {
+    let at = child(child(link, "inertial")?, "origin").and_then(|origin| origin.attribute("xyz"));
+    let at: [f64; 3] = numbers(at.unwrap_or("0 0 0"))?.try_into().ok()?;
+    Some((link.attribute("name")?, at.into()))
 }
 
 /// A joint but for its place in the tree.
-fn read(node: Node, line: u32) -> Result<RobotJoint, RobotError> {
+fn joint(node: Node, line: u32, centres: &HashMap<&str, Vector3<f64>>) -> Result<RobotJoint, RobotError> {
     let name = node.attribute("name").filter(|name| !name.is_empty()).ok_or_else(|| {
         RobotError::new(format!("line {line}"), "found a <joint> without a name, expected name=\"...\"", "name it")
     })?;
@@ -138,9 +86,8 @@ fn read(node: Node, line: u32) -> Result<RobotJoint, RobotError> {
     };
     let three = |tag: &str, attribute: &str| -> Result<Option<Vector3<f64>>, RobotError> {
         let Some(text) = child(node, tag).and_then(|node| node.attribute(attribute)) else { return Ok(None) };
-        let numbers: Option<Vec<f64>> = text.split_whitespace().map(|x| x.parse().ok()).collect();
-        match numbers.as_deref() {
-            Some(&[x, y, z]) if [x, y, z].iter().all(|x| x.abs() < 1e6) => Ok(Some(Vector3::new(x, y, z))),
+        match numbers(text).as_deref() {
+            Some(&[x, y, z]) => Ok(Some(Vector3::new(x, y, z))),
             _ => {
                 let what = format!("<{tag} {attribute}=\"{text}\">: expected three numbers");
                 Err(RobotError::new(&place, what, "as in \"0 0 1\""))
@@ -208,12 +155,14 @@ fn read(node: Node, line: u32) -> Result<RobotJoint, RobotError> {
             offset: number("mimic", "offset")?.unwrap_or(0.0),
         }),
     };
+    let moves = child(node, "child").and_then(|node| node.attribute("link")).unwrap_or_default();
     Ok(RobotJoint {
         name: name.to_owned(),
         line,
         motion,
         kind: node.attribute("type").unwrap_or_default().to_owned(),
-        child: child(node, "child").and_then(|node| node.attribute("link")).unwrap_or_default().to_owned(),
+        child: moves.to_owned(),
+        centre: centres.get(moves).copied(),
         parent: None,
         origin: Isometry3::from_parts(
             Translation3::from(place_of),
