@@ -26,8 +26,10 @@
 mod axis;
 mod free;
 mod model;
+mod smooth;
 mod state;
 mod step;
+mod stop;
 
 pub use model::{LimitTable, Limiter};
 pub use state::{Clamped, LimitReport, LimitState};

@@ -1,7 +1,9 @@
 //! The limiter: a checked, immutable view of the tables.
 
 use super::axis::{Bounds, CATCH_UP, reach};
+use super::stop::Pace;
 use crate::engine::FromPack;
+use crate::kernel::sqrt;
 use crate::model::{LimitsMeta, LoadError, ModelMeta, Pack};
 use crate::rig::Rig;
 
@@ -17,6 +19,8 @@ pub struct LimitTable<'a> {
     pub velocity: &'a [[f32; 3]],
     /// Largest acceleration of each coordinate, rad/s^2 or m/s^2.
     pub acceleration: &'a [[f32; 3]],
+    /// Largest jerk of each coordinate, rad/s^3 or m/s^3; 0 for none. No rows at all for none anywhere.
+    pub jerk: &'a [[f32; 3]],
     /// Coordinates at rest, where a joint starts and where it goes when frames fail to come.
     pub rest: &'a [[f32; 3]],
 }
@@ -45,6 +49,8 @@ pub(super) struct Rates {
 /// One coordinate's limits.
 pub(super) struct Limit {
     pub bounds: Bounds,
+    /// Largest change of a step's change in a frame, `jerk dt^3`; 0 for none.
+    pub jerk: f32,
     pub rest: f32,
 }
 
@@ -70,6 +76,10 @@ impl<'a, const ROWS: usize> Limiter<'a, ROWS> {
             upper: pack.slice("limit/upper", rows)?,
             velocity: pack.slice("limit/velocity", rows)?,
             acceleration: pack.slice("limit/acceleration", rows)?,
+            jerk: match pack.rows("limit/jerk") {
+                Ok(_) => pack.slice("limit/jerk", rows)?,
+                Err(_) => &[],
+            },
             rest: pack.slice("limit/rest", rows)?,
         };
         Self::new(rig, table, meta, metadata.frame_rate)
@@ -78,7 +88,8 @@ impl<'a, const ROWS: usize> Limiter<'a, ROWS> {
     /// The limits of given tables on a rig, stepped `frame_rate` times a second.
     ///
     /// Refused with the table's name and the row: other numbers of entries, ranges without the rest position in them, rates so low that a
-    /// frame's step, `velocity dt` or `acceleration dt^2`, is below 1e-6, times that are negative.
+    /// frame's step, `velocity dt`, `acceleration dt^2` or `jerk dt^3`, is below 1e-6, jerks that single precision cannot tell apart that
+    /// far from 0 or with which stopping takes thousands of frames, times that are negative.
     pub fn new(rig: Rig<'a>, table: LimitTable<'a>, meta: LimitsMeta, frame_rate: f32) -> Result<Self, LoadError> {
         let rows = rig.rows();
         if rows > ROWS {
@@ -119,6 +130,7 @@ impl<'a, const ROWS: usize> Limiter<'a, ROWS> {
             ("limit/upper", table.upper.len()),
             ("limit/velocity", table.velocity.len()),
             ("limit/acceleration", table.acceleration.len()),
+            ("limit/jerk", if table.jerk.is_empty() { rows } else { table.jerk.len() }),
             ("limit/rest", table.rest.len()),
         ];
         if let Some((tensor, found)) = counts.into_iter().find(|(_, count)| *count != rows) {
@@ -130,12 +142,13 @@ impl<'a, const ROWS: usize> Limiter<'a, ROWS> {
         for (index, limit) in self.limits().enumerate() {
             let refuse = |tensor| Err(LoadError::Value { tensor, index: index / 3 });
             let used = used.next_if_eq(&index).is_some();
-            let Some(Limit { bounds: Bounds { lower, upper, speed, change }, rest }) = limit else {
+            let Some(Limit { bounds, jerk, rest }) = limit else {
                 if used {
                     return refuse("limit/velocity");
                 }
                 continue;
             };
+            let Bounds { lower, upper, speed, change } = bounds;
             if !used || !STEPS.contains(&speed) {
                 return refuse("limit/velocity");
             }
@@ -151,6 +164,11 @@ impl<'a, const ROWS: usize> Limiter<'a, ROWS> {
             if !(lower..=upper).contains(&rest) {
                 return refuse("limit/rest");
             }
+            let farthest = if lower.abs() > upper.abs() { lower.abs() } else { upper.abs() };
+            let sound = STEPS.contains(&jerk) && (lower == upper || Pace::of(&bounds, jerk).is_sound(farthest));
+            if jerk != 0.0 && !sound {
+                return refuse("limit/jerk");
+            }
         }
         Ok(())
     }
@@ -158,12 +176,14 @@ impl<'a, const ROWS: usize> Limiter<'a, ROWS> {
     /// The limits of every coordinate, in order; `None` for travel, and for what a row does not use. Cost: two products per coordinate.
     pub(super) fn limits(&self) -> impl Iterator<Item = Option<Limit>> + use<'a, ROWS> {
         let (table, time) = (self.table, self.frame_time);
+        let cube = time * (time * time);
         let flat = |rows: &'a [[f32; 3]]| rows.as_flattened().iter();
         let ranges = flat(table.lower).zip(flat(table.upper)).zip(flat(table.rest));
         let rates = flat(table.velocity).zip(flat(table.acceleration));
-        ranges.zip(rates).map(move |(((lower, upper), rest), (velocity, acceleration))| {
+        ranges.zip(rates).enumerate().map(move |(index, (((lower, upper), rest), (velocity, acceleration)))| {
+            let jerk = table.jerk.as_flattened().get(index).map_or(0.0, |jerk| jerk * cube);
             let (speed, change) = (velocity * time, acceleration * (time * time));
-            let limit = Limit { bounds: Bounds { lower: *lower, upper: *upper, speed, change }, rest: *rest };
+            let limit = Limit { bounds: Bounds { lower: *lower, upper: *upper, speed, change }, jerk, rest: *rest };
             (*velocity > 0.0).then_some(limit)
         })
     }
@@ -187,11 +207,15 @@ impl<'a, const ROWS: usize> Limiter<'a, ROWS> {
     /// the whole range to go. The time that a recovery takes at most.
     pub fn recovery_frames(&self) -> u32 {
         let mut most = 0.0f32;
-        for Limit { bounds: Bounds { lower, upper, speed, change }, .. } in self.limits().flatten() {
+        for Limit { bounds, jerk, .. } in self.limits().flatten() {
+            let Bounds { lower, upper, speed, change } = bounds;
             let range = upper - lower;
             let speed = speed.min(reach(range, CATCH_UP * change));
             if speed > 0.0 {
-                most = most.max(range / speed + 5.0 * speed / change + 5.0);
+                // A change that rises and falls at the jerk's rate reaches no more than that.
+                let change = if jerk > 0.0 { change.min(sqrt(speed * jerk)) } else { change };
+                let eases = if jerk > 0.0 { 5.0 * change / jerk + 10.0 } else { 0.0 };
+                most = most.max(range / speed + 5.0 * speed / change + eases + 5.0);
             }
         }
         most as u32

@@ -57,7 +57,7 @@ impl LimitsModel {
         Self { name: name.to_owned(), frame_rate, meta, height: Self::standing(rig, &meta), joints }
     }
 
-    /// From the ground to twice the height at which the skeleton stands, at the root's rates; at rest it stands.
+    /// From the ground to twice the height at which the skeleton stands, at the root's rates, without a jerk limit; at rest it stands.
     pub fn standing(rig: &Rig, meta: &LimitsMeta) -> HeightLimit {
         let rest = rig.skeleton.rest_positions();
         let lowest = rest.iter().map(|joint| joint.y).fold(f64::INFINITY, f64::min);
@@ -67,6 +67,7 @@ impl LimitsModel {
             upper: 2.0 * height,
             velocity: meta.root_velocity,
             acceleration: meta.root_acceleration,
+            jerk: 0.0,
             rest: height,
         }
     }

@@ -30,7 +30,7 @@ pub struct Table {
     pub joints: Vec<Entry>,
 }
 
-/// The root's height, m, m/s, m/s^2.
+/// The root's height, m, m/s, m/s^2, m/s^3.
 #[derive(Clone, Copy, Debug, Serialize)]
 #[expect(missing_docs, reason = "the fields of `HeightLimit`, which says what they are")]
 pub struct Height {
@@ -39,9 +39,10 @@ pub struct Height {
     pub rest: f64,
     pub velocity: f64,
     pub acceleration: f64,
+    pub jerk: f64,
 }
 
-/// One joint; lists have one entry per coordinate. A free joint has one speed and one acceleration, for all three, and no bounds.
+/// One joint; lists have one entry per coordinate. A free joint has one speed, one acceleration and one jerk, for all three, and no bounds.
 #[derive(Clone, Debug, Serialize)]
 pub struct Entry {
     /// Name in the skeleton.
@@ -65,6 +66,8 @@ pub struct Entry {
     pub velocity: Vec<f64>,
     /// Largest accelerations, rad/s^2 or m/s^2.
     pub acceleration: Vec<f64>,
+    /// Largest jerks, rad/s^3 or m/s^3; 0 for none.
+    pub jerk: Vec<f64>,
 }
 
 impl Table {
@@ -90,7 +93,7 @@ impl Table {
     pub fn csv(&self) -> String {
         let mut text =
             "joint,kind,coordinate,urdf,axis_x,axis_y,axis_z,reference_i,reference_j,reference_k,reference_w,lower,upper,rest,\
-                        velocity,acceleration\n"
+                        velocity,acceleration,jerk\n"
                 .to_owned();
         for joint in &self.joints {
             for (at, velocity) in joint.velocity.iter().enumerate() {
@@ -109,6 +112,7 @@ impl Table {
                     cell(&joint.rest),
                     velocity.to_string(),
                     cell(&joint.acceleration),
+                    cell(&joint.jerk),
                 ]
                 .join(",");
                 text.push('\n');
@@ -135,6 +139,7 @@ fn height(limit: &HeightLimit) -> Height {
         rest: plain(limit.rest),
         velocity: plain(limit.velocity),
         acceleration: plain(limit.acceleration),
+        jerk: plain(limit.jerk),
     }
 }
 
@@ -154,5 +159,6 @@ fn entry(limit: &JointLimit, name: &str, urdf: Option<Vec<String>>) -> Entry {
         rest: list(&limit.rest, bounds),
         velocity: list(&limit.velocity, rates),
         acceleration: list(&limit.acceleration, rates),
+        jerk: list(&limit.jerk, rates),
     }
 }

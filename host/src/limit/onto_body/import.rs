@@ -27,6 +27,8 @@ pub struct Rates {
     pub velocity: Option<f64>,
     /// rad/s^2.
     pub acceleration: Option<f64>,
+    /// rad/s^3; 0 for none.
+    pub jerk: Option<f64>,
 }
 
 /// Limits, and how they came about.
@@ -58,6 +60,7 @@ pub fn import(
     note_leaders(robot, &mut notes);
     let acceleration = rates.acceleration.or(map.acceleration);
     let velocity = rates.velocity.or(map.velocity);
+    let jerk = rates.jerk.or(map.jerk).unwrap_or(0.0);
     let mut limits = Vec::new();
     for (joint, entry) in entries.iter().enumerate() {
         let bone = &rig.skeleton.joints[joint];
@@ -68,7 +71,8 @@ pub fn import(
                 let axis =
                     |at: &usize| turned[joint].inverse() * (to_world * (frames[*at].rotation * robot.joints[*at].axis));
                 let axes: Vec<Vector3<f64>> = joints[joint].iter().map(axis).collect();
-                let rows = rows(robot, &joints[joint], entry, velocity, acceleration, &mut notes)?;
+                let defaults = Rates { velocity, acceleration, jerk: Some(jerk) };
+                let rows = rows(robot, &joints[joint], entry, defaults, &mut notes)?;
                 let mut limit = limit(entry, &axes, &rows, robot, &mut joints[joint], &mut notes)?;
                 limit.coordinates.reference = reference;
                 Some(limit)
@@ -103,6 +107,8 @@ pub fn import(
                     speed.map_or(rate, |speed| speed[0] as f32),
                     change(entry.and_then(|e| e.acceleration.as_ref()))?,
                 );
+                let own_jerk = entry.and_then(|entry| entry.jerk.as_ref()).map_or(jerk, |jerk| jerk[0]);
+                let free = free.with_jerk(own_jerk as f32);
                 // About the skeleton's own middle, unless the map says where the bone is at rest.
                 let own =
                     if entry.is_some_and(|entry| entry.bone.is_some()) { reference } else { own[joint].reference };
@@ -222,6 +228,7 @@ struct Row {
     upper: f64,
     velocity: f64,
     acceleration: f64,
+    jerk: f64,
     rest: Option<f64>,
 }
 
@@ -271,8 +278,7 @@ fn rows(
     robot: &Robot,
     joints: &[usize],
     entry: &Entry,
-    velocity: Option<f64>,
-    acceleration: Option<f64>,
+    Rates { velocity, acceleration, jerk }: Rates,
     notes: &mut Vec<String>,
 ) -> Result<Vec<Row>, RobotError> {
     let mut rows = Vec::new();
@@ -308,6 +314,7 @@ fn rows(
             upper,
             velocity: speed,
             acceleration: own(&entry.acceleration).or(acceleration).ok_or_else(|| no_acceleration(&place))?,
+            jerk: own(&entry.jerk).or(jerk).unwrap_or(0.0),
             rest: own(&entry.rest),
         });
     }
@@ -433,6 +440,7 @@ fn limit(
         coordinates,
         velocity: three(&|row| row.velocity as f32),
         acceleration: three(&|row| row.acceleration as f32),
+        jerk: three(&|row| row.jerk as f32),
         ..JointLimit::free(1.0, 1.0)
     };
     let (lower, mut upper) = (three(&|row| row.lower as f32), three(&|row| row.upper as f32));
@@ -462,7 +470,7 @@ fn along(axes: &[Vector3<f64>]) -> Option<[(usize, f64); 3]> {
 
 /// The device's refusal, with the joint's name.
 fn refused(error: &LoadError, model: &LimitsModel, rig: &Rig) -> RobotError {
-    let help = "the range must hold the rest angle; velocity / rate and acceleration / rate^2 must be above 1e-6";
+    let help = "the range must hold the rest angle; velocity / rate, acceleration / rate^2 and jerk / rate^3 must be above 1e-6";
     let of_joint = |name: &str, column: &str| {
         RobotError::new(format!("joint '{name}'"), format!("its {column} is not what a limiter takes"), help)
     };
