@@ -7,9 +7,11 @@
 mod clips;
 mod engines;
 mod frames;
+mod moves;
 mod packs;
 mod robots;
 
 pub use clips::{bvh, csv, map};
+pub use moves::moves;
 pub use packs::pack;
 pub use robots::urdf;

@@ -19,12 +19,13 @@ use rand::{RngExt, SeedableRng};
 /// A target, and how many damaged inputs a test run gives it.
 type Target = (&'static str, fn(&[u8]), usize);
 
-const TARGETS: [Target; 5] = [
+const TARGETS: [Target; 6] = [
     ("pack", fuzz::pack, 6000),
     ("bvh", fuzz::bvh, 2000),
     ("csv", fuzz::csv, 500),
     ("map", fuzz::map, 10_000),
     ("urdf", fuzz::urdf, 10_000),
+    ("moves", fuzz::moves, 20_000),
 ];
 
 fn folder(kind: &str, target: &str) -> PathBuf {

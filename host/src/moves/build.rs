@@ -11,6 +11,8 @@ const TURNS: f64 = 4.0 * std::f64::consts::PI;
 pub(super) struct Draft {
     pub format: Format,
     pub channels: Vec<Channel>,
+    /// How the file spells the channels.
+    pub labels: Vec<String>,
     /// s; `None` for a file that says no times.
     pub times: Option<Vec<f64>>,
     /// Frames per second that the file says.
@@ -56,7 +58,13 @@ impl Draft {
                 return Err(MovesError::new((self.place)(frame), what, help));
             }
         }
-        let Self { format, channels, values, extra, notes, .. } = self;
+        let first = self.times.iter().flatten().next().copied().unwrap_or_default();
+        if first != 0.0 {
+            self.notes.push(format!("Times begin at {first} s in the file: they count from 0 here."));
+        }
+        self.doubt(&times);
+        let Self { format, channels, labels, values, mut extra, notes, .. } = self;
+        extra.spelling.labels = channels.iter().cloned().zip(labels).collect();
         Ok(Moves { format, channels, times, values, extra, notes })
     }
 
@@ -68,6 +76,18 @@ impl Draft {
         }
         for channel in self.channels.iter_mut().filter(|channel| units[&channel.name].len() > 1) {
             channel.name = channel.header();
+        }
+    }
+
+    /// Times without a unit that fit milliseconds better are told.
+    fn doubt(&mut self, times: &[f64]) {
+        let (Some(time), Some(last)) = (&self.extra.spelling.time, times.last()) else { return };
+        let step = last / (times.len() as f64 - 1.0);
+        if time.1 == 1.0 && step >= 2.0 && !time.0.trim().ends_with("_s") {
+            self.notes.push(format!(
+                "Times of '{}' are taken as seconds, {step:.1} of them from frame to frame: if they are milliseconds, name it time_ms.",
+                time.0
+            ));
         }
     }
 
@@ -103,15 +123,20 @@ impl Draft {
     }
 }
 
+/// Frames named by their lines.
+pub(super) fn at_lines(lines: Vec<u32>) -> Box<dyn Fn(usize) -> String> {
+    Box::new(move |frame| format!("line {}", lines.get(frame).copied().unwrap_or_default()))
+}
+
 /// Seconds in one of what a name of times counts; `None` for a name of no time.
 pub(super) fn time_unit(name: &str) -> Option<f64> {
     let plain: String = name.trim().to_lowercase().chars().map(|c| if c.is_alphanumeric() { c } else { '_' }).collect();
     match plain.trim_matches('_') {
-        "time" | "t" | "time_s" | "time_sec" | "timestamp" | "timestamp_s" | "seconds" | "sec" | "secs" | "stamp"
-        | "time_from_start" | "time_stamp" => Some(1.0),
+        "time" | "t" | "t_s" | "time_s" | "time_sec" | "timestamp" | "timestamp_s" | "timestamps" | "times"
+        | "seconds" | "sec" | "secs" | "stamp" | "time_from_start" | "time_stamp" => Some(1.0),
         "time_ms" | "timestamp_ms" | "ms" | "milliseconds" | "millis" | "t_ms" | "stamp_ms" => Some(1e-3),
-        "time_us" | "timestamp_us" | "microseconds" | "micros" => Some(1e-6),
-        "time_ns" | "timestamp_ns" | "stamp_ns" | "ns" | "nanoseconds" => Some(1e-9),
+        "time_us" | "timestamp_us" | "t_us" | "stamp_us" | "microseconds" | "micros" => Some(1e-6),
+        "time_ns" | "timestamp_ns" | "t_ns" | "stamp_ns" | "ns" | "nanoseconds" => Some(1e-9),
         _ => None,
     }
 }

@@ -4,24 +4,33 @@
 //! |---|---|
 //! | `unit` | [`Unit`], [`Channel`]: units, and how headers carry them |
 //! | `read` | [`read`], [`parse`], [`is_moves`]: which format a file has |
-//! | `table` | CSV by joint name, LeRobot's tables, ROS trajectories as CSV |
-//! | `json` | JSON by joint name, JSON lines |
+//! | `columns`, `table` | CSV by joint name, LeRobot's tables, ROS trajectories as CSV |
+//! | `json`, `records` | JSON by joint name; JSON with an object per frame, JSON lines |
 //! | `reachy` | moves of Reachy Mini |
 //! | `trajectory` | `trajectory_msgs/JointTrajectory` as YAML |
+//! | `lerobot` | what tables of LeRobot have of their own |
+//! | `lex`, `yaml`, `tape` | JSON and YAML as one flat list of values, each with its line |
 //! | `build` | checks that all formats share: times, names, counts |
 //! | `resample` | other frame rates |
-//! | `write` | every format written back |
+//! | `spelling`, `write` | every format written back, as the file spelled it |
 
 mod build;
+mod columns;
 mod error;
 mod json;
+mod lerobot;
+mod lex;
 mod reachy;
 mod read;
+mod records;
 mod resample;
+mod spelling;
 mod table;
+mod tape;
 mod trajectory;
 mod unit;
 mod write;
+mod yaml;
 
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -36,6 +45,8 @@ pub use unit::{Channel, Unit};
 pub enum Format {
     /// A table with a header of joint names.
     Csv,
+    /// The table of a body's joint angles that kinesic writes.
+    Angles,
     /// `{"fps": 50, "joints": {"pan": [...]}}`.
     Json,
     /// `[{"time": 0, "pan": 0.1}, ...]`.
@@ -46,6 +57,10 @@ pub enum Format {
     Reachy,
     /// `trajectory_msgs/JointTrajectory` as YAML.
     Trajectory,
+    /// `trajectory_msgs/JointTrajectory` as a table with `time_from_start`.
+    TrajectoryCsv,
+    /// A table of LeRobot, with lists of joints.
+    LeRobot,
 }
 
 /// What the caller knows better than the file.
@@ -64,8 +79,18 @@ pub struct Extra {
     pub fields: Map<String, Value>,
     /// Names of what every frame has.
     pub columns: Vec<String>,
-    /// One value per frame and column; a cell of a table is a text.
+    /// One value per frame and column; a cell of a table is a text. A frame may have fewer, where the last ones are not there.
     pub rows: Vec<Vec<Value>>,
+    /// How the file spells what is written per frame.
+    spelling: spelling::Spelling,
+}
+
+impl Extra {
+    /// What a frame has, by column.
+    fn present(&self, frame: usize) -> impl Iterator<Item = (&String, &Value)> {
+        let row = self.rows.get(frame).into_iter().flatten();
+        self.columns.iter().zip(row).filter(|(_, value)| !value.is_null())
+    }
 }
 
 /// A motion of a machine in its own joints.
@@ -122,7 +147,7 @@ pub struct ChannelSummary {
 }
 
 /// Frames may be so far from equally spaced, as a share of their distance.
-const EVEN: f64 = 0.02;
+const EVEN: f64 = 0.05;
 
 impl Moves {
     /// A motion that comes from no file, evenly or unevenly in time.
@@ -146,17 +171,20 @@ impl Moves {
         self.channels.iter().position(|channel| channel.name == name)
     }
 
-    /// Frames per second: of the median distance between frames.
+    /// Frames per second: of the median distance between frames, and of those near it. Times are written with few digits: 0.016, 0.017 and
+    /// 0.017 s are meant to be 60 frames per second.
     pub fn fps(&self) -> f64 {
         let mut steps: Vec<f64> = self.times.windows(2).map(|pair| pair[1] - pair[0]).collect();
         steps.sort_by(f64::total_cmp);
-        let step = steps.get(steps.len() / 2).copied().unwrap_or(1.0);
+        let middle = steps.get(steps.len() / 2).copied().unwrap_or(1.0);
+        let near: Vec<f64> = steps.into_iter().filter(|step| (step - middle).abs() < 0.2 * middle).collect();
+        let step = if near.is_empty() { middle } else { near.iter().sum::<f64>() / near.len() as f64 };
         let fps = 1.0 / step;
-        // Times are written with few digits: 49.9998 is meant to be 50.
-        if (fps - fps.round()).abs() < 2e-3 * fps && fps >= 1.0 { fps.round() } else { fps }
+        // 49.9998 is meant to be 50; the 29.97 frames of television are not 30.
+        if (fps - fps.round()).abs() < 5e-4 * fps && fps >= 1.0 { fps.round() } else { fps }
     }
 
-    /// Whether every frame is where an even clock would have it, within a fiftieth of a frame for each second.
+    /// Whether every frame is where an even clock would have it, within a twentieth of a frame for each second.
     pub fn is_even(&self) -> bool {
         let fps = self.fps();
         self.times.iter().zip(0..).all(|(time, frame)| {

@@ -7,7 +7,11 @@ use crate::clip;
 
 /// Reads a motion of any format that `docs/moves.md` lists, also compressed with gzip.
 pub fn read(path: &Path, options: &Options) -> Result<Moves, MovesError> {
-    let bytes = clip::contents(path).map_err(|error| MovesError::new("", error.to_string(), "name a file of moves"))?;
+    let bytes = clip::contents(path).map_err(|error| {
+        let (place, said) = (path.display().to_string(), error.to_string());
+        let what = said.strip_prefix(&format!("{place}: ")).unwrap_or(&said);
+        MovesError::new(&place, what, "name a file of moves")
+    })?;
     parse(&bytes, path, options)
 }
 
@@ -15,8 +19,16 @@ pub fn read(path: &Path, options: &Options) -> Result<Moves, MovesError> {
 pub fn parse(bytes: &[u8], path: &Path, options: &Options) -> Result<Moves, MovesError> {
     let in_file = |error: MovesError| error.in_file(path);
     if bytes.starts_with(b"PAR1") {
-        let help = "python -c \"import pandas as pd; pd.read_parquet('x.parquet').to_json('x.jsonl', orient='records', lines=True)\"";
+        let (from, to) = (path.display(), path.with_extension("jsonl"));
+        let to = to.display();
+        let help = format!(
+            "python -c \"import pandas as pd; pd.read_parquet('{from}').to_json('{to}', orient='records', lines=True)\""
+        );
         return Err(in_file(MovesError::new("", "found a parquet file, expected a table as CSV or JSON lines", help)));
+    }
+    if bytes.len() > LONGEST {
+        let what = format!("found {} bytes, expected at most {LONGEST}", bytes.len());
+        return Err(in_file(MovesError::new("", what, "cut the motion into several files")));
     }
     let text = match std::str::from_utf8(bytes) {
         Ok(text) => text.trim_start_matches('\u{feff}'),
@@ -37,6 +49,9 @@ pub fn parse(bytes: &[u8], path: &Path, options: &Options) -> Result<Moves, Move
     moves.map_err(in_file)
 }
 
+/// Bytes of a file at most.
+const LONGEST: usize = 1 << 31;
+
 enum Kind {
     Json,
     Yaml,
@@ -49,13 +64,35 @@ fn kind(path: &Path, text: &[u8]) -> Kind {
     if matches!(first, Some(b'{' | b'[')) {
         return Kind::Json;
     }
-    let yaml =
-        path.extension().is_some_and(|found| found.eq_ignore_ascii_case("yaml") || found.eq_ignore_ascii_case("yml"));
+    let yaml = matches!(extension(path).as_str(), "yaml" | "yml");
     if yaml || holds(text, "joint_names:") { Kind::Yaml } else { Kind::Table }
 }
 
 fn holds(text: &[u8], word: &str) -> bool {
     text[..text.len().min(4096)].windows(word.len()).any(|part| part == word.as_bytes())
+}
+
+/// Keys by which JSON is told to be a motion.
+const KEYS: [&str; 12] = [
+    "joints",
+    "joint_names",
+    "set_target_data",
+    "time",
+    "times",
+    "time_s",
+    "time_ms",
+    "timestamp",
+    "t",
+    "fps",
+    "action",
+    "frame",
+];
+
+/// The extension, lower case, before `.gz`.
+fn extension(path: &Path) -> String {
+    let name = path.file_name().and_then(|name| name.to_str()).unwrap_or("").to_lowercase();
+    let name = name.strip_suffix(".gz").unwrap_or(&name);
+    name.rsplit_once('.').map_or("", |(_, extension)| extension).to_owned()
 }
 
 /// Whether the first bytes of a file are a motion in joints: a table with a time or with numbers, JSON of joints or of targets, a trajectory.
@@ -64,14 +101,15 @@ pub fn is_moves(path: &Path, head: &[u8]) -> bool {
     if head.starts_with(b"PAR1") {
         return true;
     }
-    let extension = path.extension().and_then(|found| found.to_str()).unwrap_or("").to_lowercase();
+    let extension = extension(path);
     let text = String::from_utf8_lossy(head);
     let text = text.trim_start_matches('\u{feff}').trim_start();
     if text.starts_with(['{', '[']) {
-        return !text.contains("\"asset\"") && ["json", "jsonl", "ndjson"].contains(&extension.as_str());
+        let named = ["json", "jsonl", "ndjson"].contains(&extension.as_str());
+        return named && !text.contains("\"asset\"") && KEYS.iter().any(|key| text.contains(&format!("\"{key}\"")));
     }
     if ["yaml", "yml"].contains(&extension.as_str()) || text.contains("joint_names:") {
         return true;
     }
-    extension == "csv" && table::is_motion(text)
+    ["csv", "tsv"].contains(&extension.as_str()) && table::is_motion(text)
 }

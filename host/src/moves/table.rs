@@ -1,190 +1,190 @@
-//! Tables: CSV by joint name, LeRobot's tables with lists in cells, ROS trajectories as CSV.
+//! Tables: CSV by joint name, LeRobot's tables with lists in cells, ROS trajectories as CSV, kinesic's own joint angles.
 
 use std::path::Path;
 
 use serde_json::Value;
 
-use super::build::{Draft, is_index, time_unit};
+use super::build::{Draft, at_lines, time_unit};
+use super::columns::{self, Columns};
 use super::error::shown;
-use super::{Channel, Extra, Format, Moves, MovesError, Options, json};
+use super::lerobot::{self, Episode};
+use super::spelling::Slot;
+use super::{Channel, Extra, Format, Moves, MovesError, Options, trajectory};
 
-/// Whether the beginning of a table is a motion: a header with a column of times or of frames, or with columns of joints, above numbers.
-pub(super) fn is_motion(head: &str) -> bool {
-    let lower = head.to_lowercase();
-    // Positions of joints, and of landmarks.
-    if lower.contains("hipcenterx") || lower.contains("landmark") {
-        return false;
-    }
-    let mut lines = head.lines().filter(|line| !line.trim().is_empty() && !line.starts_with('#'));
-    let (Some(header), Some(first)) = (lines.next(), lines.next()) else { return false };
-    let separator = separator(header);
-    let names: Vec<&str> = header.split(separator).map(|name| name.trim().trim_matches('"')).collect();
-    let numbers = first.split(separator).filter(|cell| number(cell, separator).is_some()).count();
-    let clock = names.iter().any(|name| time_unit(name).is_some() || name.eq_ignore_ascii_case("frame_index"));
-    let units = names.iter().any(|name| Channel::from_header(name).unit.is_some());
-    let lists = names.iter().any(|name| json::is_list_name(name));
-    names.iter().any(|name| number(name, separator).is_none()) && numbers > 0 && (clock || units || lists)
-}
-
-fn separator(header: &str) -> char {
+/// The separator of the most cells.
+pub(super) fn separator(header: &str) -> char {
     let count = |separator: char| header.matches(separator).count();
     [',', ';', '\t'].into_iter().max_by_key(|separator| (count(*separator), *separator == ',')).unwrap_or(',')
 }
 
-/// A number; with semicolons between cells a comma may stand for the point.
-fn number(cell: &str, separator: char) -> Option<f64> {
-    let cell = cell.trim().trim_matches('"');
-    match cell.parse::<f64>() {
-        Ok(value) => Some(value),
-        Err(_) if separator != ',' && cell.contains(',') => cell.replace(',', ".").parse().ok(),
+/// A number, and whether a comma stands for its point: only where other signs are between cells.
+pub(super) fn number(cell: &str, separator: char) -> Option<(f64, bool)> {
+    let cell = cell.trim();
+    match cell.parse() {
+        Ok(value) => Some((value, false)),
+        Err(_) if separator != ',' && cell.contains(',') => Some((cell.replacen(',', ".", 1).parse().ok()?, true)),
         Err(_) => None,
     }
 }
 
+/// Rows of cells under their headers, each with its line.
+pub(super) struct Rows<'a> {
+    reader: csv::Reader<&'a [u8]>,
+    text: &'a str,
+    /// Bytes that are read, and the lines that end in them.
+    read: (usize, u32),
+    names: usize,
+}
+
+impl<'a> Rows<'a> {
+    /// The headers, and the rows below them.
+    pub fn new(text: &'a str, separator: char) -> Result<(Vec<String>, Self), MovesError> {
+        let mut builder = csv::ReaderBuilder::new();
+        builder.delimiter(separator as u8).comment(Some(b'#')).flexible(true).trim(csv::Trim::All);
+        let mut reader = builder.from_reader(text.as_bytes());
+        let names: Vec<String> = reader.headers().map_err(refuse)?.iter().map(str::to_owned).collect();
+        let rows = Self { reader, text, read: (0, 0), names: names.len() };
+        Ok((names, rows))
+    }
+
+    /// The next row that is not blank, and its line.
+    pub fn next(&mut self, row: &mut csv::StringRecord) -> Result<Option<u32>, MovesError> {
+        while self.reader.read_record(row).map_err(refuse)? {
+            let line = self.line();
+            if self.names > 1 && row.len() == 1 && row.get(0) == Some("") {
+                continue;
+            }
+            if row.len() != self.names {
+                let what = format!("found {} cells, expected {}, as in the header", row.len(), self.names);
+                return Err(MovesError::new(format!("line {line}"), what, "is the line whole?"));
+            }
+            return Ok(Some(line));
+        }
+        Ok(None)
+    }
+
+    /// The line of the row that was read: its own position is that before the comments above it.
+    fn line(&mut self) -> u32 {
+        let end = self.reader.position().byte() as usize;
+        let new = self.text.as_bytes().get(self.read.0..end).unwrap_or(&[]);
+        let before = self.read.1 + new.iter().filter(|byte| **byte == b'\n').count() as u32;
+        self.read = (end, before);
+        before + u32::from(new.last() != Some(&b'\n'))
+    }
+}
+
+fn refuse(error: csv::Error) -> MovesError {
+    let line = error.position().map_or(1, csv::Position::line);
+    MovesError::new(format!("line {line}"), format!("not a table: {error}"), "is the file whole?")
+}
+
+/// Numbers of a list: `[0.1, 0.2]`, or `[0.1 0.2]` as numpy prints them.
+fn list<'a>(cell: &'a str, place: &dyn Fn(&str) -> MovesError) -> Result<impl Iterator<Item = &'a str>, MovesError> {
+    let inner = cell.strip_prefix('[').and_then(|inner| inner.strip_suffix(']')).ok_or_else(|| place(cell))?;
+    Ok(inner.split([',', ' ', '\n', '\r', '\t']).filter(|part| !part.is_empty()))
+}
+
 /// Reads a table.
 pub(super) fn parse(text: &str, path: &Path, options: &Options) -> Result<Moves, MovesError> {
-    let header = text.lines().find(|line| !line.trim().is_empty() && !line.starts_with('#')).unwrap_or("");
-    let separator = separator(header);
-    let mut reader = csv::ReaderBuilder::new()
-        .delimiter(separator as u8)
-        .comment(Some(b'#'))
-        .flexible(true)
-        .trim(csv::Trim::All)
-        .from_reader(text.as_bytes());
-    let refuse = |error: csv::Error| {
-        let line = error.position().map_or(1, csv::Position::line);
-        MovesError::new(format!("line {line}"), format!("not a table: {error}"), "is the file whole?")
-    };
-    let names: Vec<String> = reader.headers().map_err(refuse)?.iter().map(str::to_owned).collect();
-    if names.iter().all(|name| number(name, separator).is_some()) {
-        let what = "found numbers in the first line, expected the names of the joints";
-        return Err(MovesError::new("line 1", what, "put a header above them, as in time_s,pan_deg,tilt_deg"));
-    }
-    let mut rows: Vec<(u64, csv::StringRecord)> = Vec::new();
-    let mut record = csv::StringRecord::new();
-    while reader.read_record(&mut record).map_err(refuse)? {
-        // Where the reader is now: a record's own position is that before the comments above it.
-        let line = reader.position().line() - u64::from(!reader.is_done() || text.ends_with('\n'));
-        if record.len() != names.len() {
-            let what = format!("found {} cells, expected {}, as in the header", record.len(), names.len());
-            return Err(MovesError::new(format!("line {line}"), what, "is the line whole?"));
-        }
-        rows.push((line, record.clone()));
-    }
-    if rows.is_empty() {
-        return Err(MovesError::new("", "found a header without rows, expected frames below it", "is the file whole?"));
-    }
-    if names.iter().any(|name| json::is_list_name(name)) {
-        return lists(&names, &rows, separator, path, options);
-    }
-    columns(&names, &rows, separator, options)
-}
-
-/// What a column is.
-enum Column {
-    /// Seconds in one of its units.
-    Time(f64),
-    Index,
-    Joint(Channel),
-    Extra,
-}
-
-fn columns(
-    names: &[String],
-    rows: &[(u64, csv::StringRecord)],
-    separator: char,
-    options: &Options,
-) -> Result<Moves, MovesError> {
-    let cell = |row: &csv::StringRecord, at: usize| number(row.get(at).unwrap_or(""), separator);
-    let mut found: Vec<Column> = Vec::new();
-    let mut timed = false;
-    for (at, name) in names.iter().enumerate() {
-        let numbers = rows.iter().filter(|(_, row)| cell(row, at).is_some()).count();
-        found.push(match time_unit(name) {
-            Some(seconds) if !timed => {
-                timed = true;
-                Column::Time(seconds)
+    let Columns { separator, names, slots, mut labels, columns, mut spelling, mut notes, list: lists } =
+        columns::of(text)?;
+    let (mut times, mut values, mut lines, mut indices) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let mut extra = Extra { columns, ..Extra::default() };
+    let (mut episode, mut width) = (Episode::new(options.episode), labels.len());
+    let (_, mut reader) = Rows::new(text, separator)?;
+    let mut row = csv::StringRecord::new();
+    while let Some(line) = reader.next(&mut row)? {
+        let odd = |at: usize, found: &str, expected: &str| {
+            let name = names.get(at).map_or("", String::as_str);
+            let what = format!("found {}, expected {expected}", shown(found));
+            MovesError::new(format!("line {line}, column {name}"), what, "correct the cell, or cut the line out")
+        };
+        let finite = |at: usize, cell: &str, comma: &mut bool| match number(cell, separator) {
+            Some((value, own)) if value.is_finite() => {
+                *comma |= own;
+                Ok(value)
             }
-            _ if is_index(name) => Column::Index,
-            // Hardly a number in it: text.
-            _ if numbers == 0 || 10 * numbers < rows.len() => Column::Extra,
-            _ => Column::Joint(Channel::from_header(name)),
-        });
-    }
-    let (mut times, mut values, mut extra) = (Vec::new(), Vec::new(), Extra::default());
-    extra.columns =
-        names.iter().zip(&found).filter(|(_, c)| matches!(c, Column::Extra)).map(|(n, _)| n.clone()).collect();
-    for (line, row) in rows {
-        let mut texts = Vec::new();
-        for (at, column) in found.iter().enumerate() {
-            let told = || {
-                let what =
-                    format!("{}: found {}, expected a finite number", names[at], shown(row.get(at).unwrap_or("")));
-                MovesError::new(format!("line {line}"), what, "correct the cell, or cut the line out")
-            };
-            match column {
-                Column::Time(seconds) => {
-                    times.push(cell(row, at).filter(|x| x.is_finite()).ok_or_else(told)? * seconds)
+            _ => Err(odd(at, cell, "a finite number")),
+        };
+        let place = slots.iter().position(|slot| *slot == Slot::Episode);
+        if let Some(at) = place
+            && !episode.takes(Some(finite(at, row.get(at).unwrap_or(""), &mut false)?))
+        {
+            continue;
+        }
+        let mut texts = Vec::with_capacity(extra.columns.len());
+        for (at, (slot, cell)) in slots.iter().zip(&row).enumerate() {
+            match slot {
+                Slot::Time(seconds) => times.push(finite(at, cell, &mut spelling.comma)? * seconds),
+                Slot::Joint(_) => values.push(finite(at, cell, &mut spelling.comma)?),
+                Slot::Index => indices.extend(number(cell, separator).map(|(value, _)| value)),
+                Slot::List => {
+                    let before = values.len();
+                    for part in list(cell, &|cell| odd(at, cell, "a list of numbers, as in [0.1, 0.2]"))? {
+                        values.push(finite(at, part, &mut false)?);
+                    }
+                    let found = values.len() - before;
+                    width = if lines.is_empty() { found } else { width };
+                    if found != width {
+                        return Err(odd(at, cell, &format!("{width} numbers, as in the first frame")));
+                    }
                 }
-                Column::Joint(_) => values.push(cell(row, at).filter(|x| x.is_finite()).ok_or_else(told)?),
-                Column::Extra => texts.push(Value::String(row.get(at).unwrap_or("").to_owned())),
-                Column::Index => {}
+                Slot::Episode | Slot::Extra(_) => texts.push(Value::String(cell.to_owned())),
             }
         }
         if !extra.columns.is_empty() {
             extra.rows.push(texts);
         }
+        lines.push(line);
     }
-    let lines: Vec<u64> = rows.iter().map(|(line, _)| *line).collect();
-    let draft = Draft {
-        format: Format::Csv,
-        channels: found
-            .into_iter()
-            .filter_map(|c| if let Column::Joint(channel) = c { Some(channel) } else { None })
-            .collect(),
-        times: timed.then_some(times),
-        fps: None,
-        values,
-        extra,
-        notes: Vec::new(),
-        place: Box::new(move |frame| format!("line {}", lines.get(frame).copied().unwrap_or_default())),
+    if lists.is_some() || slots.contains(&Slot::Episode) {
+        episode.finish(lines.len(), &mut notes)?;
+    }
+    if let Some(lists) = lists {
+        labels = lerobot::names(path, lists, width, &mut notes);
+    }
+    let timed = spelling.time.clone();
+    let times = match &timed {
+        Some(_) => Some(times),
+        None => columns::gaps(&indices, lines.len(), options, &mut notes),
     };
-    draft.finish(options)
+    let ros = timed.is_some_and(|(label, _)| label.trim().eq_ignore_ascii_case("time_from_start"));
+    if ros {
+        notes.push(trajectory::UNITS.to_owned());
+    }
+    let format = match () {
+        () if lists.is_some() => Format::LeRobot,
+        () if ros => Format::TrajectoryCsv,
+        () if columns::is_angles(&names) => Format::Angles,
+        () => Format::Csv,
+    };
+    extra.spelling = spelling;
+    let channels = labels.iter().map(|label| Channel::from_header(label)).collect();
+    Draft { format, channels, labels, times, fps: None, values, extra, notes, place: at_lines(lines) }.finish(options)
 }
 
-/// LeRobot's rows as JSON records: the cells of lists are `[0.1, 0.2]`, or `[0.1 0.2]` as numpy prints them.
-fn lists(
-    names: &[String],
-    rows: &[(u64, csv::StringRecord)],
-    separator: char,
-    path: &Path,
-    options: &Options,
-) -> Result<Moves, MovesError> {
-    let mut records = Vec::new();
-    for (line, row) in rows {
-        let mut record = serde_json::Map::new();
-        for (name, cell) in names.iter().zip(row) {
-            let value = match cell.strip_prefix('[').and_then(|inner| inner.strip_suffix(']')) {
-                Some(inner) => {
-                    let parts = inner.split([',', ' ', '\n']).filter(|part| !part.is_empty());
-                    let numbers: Option<Vec<Value>> = parts
-                        .map(|part| part.parse::<f64>().ok().and_then(serde_json::Number::from_f64).map(Value::Number))
-                        .collect();
-                    let Some(numbers) = numbers else {
-                        let what = format!("{name}: found {}, expected a list of finite numbers", shown(cell));
-                        return Err(MovesError::new(format!("line {line}"), what, "as in [0.1, 0.2]"));
-                    };
-                    Value::Array(numbers)
-                }
-                None => number(cell, separator)
-                    .and_then(serde_json::Number::from_f64)
-                    .map_or_else(|| Value::String(cell.to_owned()), Value::Number),
-            };
-            record.insert(name.clone(), value);
-        }
-        records.push(Value::Object(record));
+/// Whether the beginning of a table is a motion: a header with a column of times or of frames, or with columns of joints, above numbers.
+pub(super) fn is_motion(head: &str) -> bool {
+    let lower = head.to_lowercase();
+    let mut lines = head.lines().filter(|line| !line.trim().is_empty() && !line.starts_with('#'));
+    let Some(header) = lines.next() else { return false };
+    let separator = separator(header);
+    let names: Vec<&str> = header.split(separator).map(|name| name.trim().trim_matches('"')).collect();
+    let is = |name: &str| names.iter().any(|own| own.eq_ignore_ascii_case(name));
+    // Positions of joints, and of landmarks.
+    if lower.contains("hipcenterx")
+        || lower.contains("landmark")
+        || (is("x0") || is("x_0")) && (is("y67") || is("y_67"))
+    {
+        return false;
     }
-    let lines: Vec<u64> = rows.iter().map(|(line, _)| *line).collect();
-    let place = move |frame: usize| format!("line {}", lines.get(frame).copied().unwrap_or_default());
-    json::lerobot(&records, path, options, Box::new(place))
+    let cells = |line: &str| {
+        line.split(separator).filter(|cell| number(cell.trim_matches('"'), separator).is_some()).count() > 0
+    };
+    let clock = names.iter().any(|name| time_unit(name).is_some() || name.eq_ignore_ascii_case("frame_index"));
+    let units = names.iter().any(|name| Channel::from_header(name).unit.is_some());
+    let lists = names.iter().any(|name| lerobot::is_list_name(name));
+    let worded = names.iter().any(|name| number(name, separator).is_none());
+    // A wide header fills the beginning of a file alone.
+    worded && lines.next().is_none_or(cells) && (clock || units || lists)
 }

@@ -1,115 +1,135 @@
 //! `trajectory_msgs/JointTrajectory` as YAML: what `ros2 topic echo` and bag dumps print, and configuration files hold.
 
-use serde_json::{Value, json};
+use std::fmt::Write;
 
 use super::build::Draft;
-use super::error::shown;
-use super::json::finite;
-use super::{Channel, Extra, Format, Moves, MovesError, Options, Unit};
+use super::tape::{Node, quote};
+use super::write::number;
+use super::{Channel, Extra, Format, Moves, MovesError, Options, Unit, records, yaml};
 
 const HELP: &str = "as in  joint_names: [pan]  points: [{positions: [0.1], time_from_start: {sec: 0, nanosec: 0}}]";
 
+/// What a JointTrajectory is in, as far as it says so.
+pub(super) const UNITS: &str = "A JointTrajectory is in rad and m: it names no unit of a joint.";
+
 /// Reads the first document that holds a trajectory.
 pub(super) fn parse(text: &str, options: &Options) -> Result<Moves, MovesError> {
-    let mut found = None;
-    for document in serde_norway::Deserializer::from_str(text) {
-        let value: Value = serde::Deserialize::deserialize(document).map_err(|error: serde_norway::Error| {
-            let line = error.location().map_or(1, |location| location.line());
-            let help = "is the file whole, and indented by spaces? `yamllint FILE` finds the same error";
-            MovesError::new(format!("line {line}"), format!("not YAML: {}", shown(&error.to_string())), help)
-        })?;
-        found = found.or_else(|| trajectory(&value, 0).cloned());
-    }
-    let Some(found) = found else {
+    let tape = yaml::parse(text)?;
+    let mut found = tape.root().items().filter_map(|document| trajectory(document, 0));
+    let Some((whole, depth)) = found.next() else {
         return Err(MovesError::new("", "found no joint_names and points, expected a JointTrajectory", HELP));
     };
-    let names = found.get("joint_names").and_then(Value::as_array).map(Vec::as_slice).unwrap_or_default();
-    let names: Option<Vec<&str>> = names.iter().map(Value::as_str).collect();
-    let names =
-        names.ok_or_else(|| MovesError::new("joint_names", "found another thing, expected a list of names", HELP))?;
-    let points = found.get("points").and_then(Value::as_array).map(Vec::as_slice).unwrap_or_default();
-    let (mut times, mut values, mut dropped) = (Vec::new(), Vec::new(), Vec::new());
-    for (frame, point) in points.iter().enumerate() {
+    let mut notes = vec![UNITS.to_owned()];
+    match found.count() {
+        0 => {}
+        more => notes.push(format!("The file holds {more} further trajectories: the first is taken.")),
+    }
+    if depth > 0 {
+        notes.push("What is around the trajectory is left out.".into());
+    }
+    let (names, points) = (whole.get("joint_names").unwrap_or(whole), whole.get("points").unwrap_or(whole));
+    let labels: Vec<String> = names.list(|| "joint_names".into())?.map(|name| name.text().to_owned()).collect();
+    let (mut times, mut values) = (Vec::new(), Vec::new());
+    let mut dropped: Vec<&str> = Vec::new();
+    for (frame, point) in points.list(|| "points".into())?.enumerate() {
         let place = |key: &str| format!("point {frame}, {key}");
-        let positions = point.get("positions").and_then(Value::as_array).map(Vec::as_slice).unwrap_or_default();
-        if positions.len() != names.len() {
-            let what = format!("found {} numbers, expected {}, as many as joint_names", positions.len(), names.len());
-            return Err(MovesError::new(place("positions"), what, HELP));
-        }
-        for position in positions {
-            if position.as_str() == Some("...") {
-                let what = "found '...', expected a number";
-                return Err(MovesError::new(
-                    place("positions"),
-                    what,
-                    "record it again with ros2 topic echo --full-length",
-                ));
+        let start = values.len();
+        let positions = point.get("positions").unwrap_or(point);
+        if positions.is_list() {
+            for (at, position) in positions.items().enumerate() {
+                let name = || labels.get(at).map_or("positions", String::as_str);
+                values.push(position.finite(|| place(name()))?);
             }
-            values.push(finite(position, || place("positions"))?);
         }
-        times.push(seconds(point.get("time_from_start").unwrap_or(&Value::Null), || place("time_from_start"))?);
-        for key in ["velocities", "accelerations", "effort"] {
-            let filled = point.get(key).and_then(Value::as_array).is_some_and(|list| !list.is_empty());
-            if filled && !dropped.contains(&key) {
+        let (found, expected) = (values.len() - start, labels.len());
+        if found != expected {
+            let what = format!("found {found} positions, expected {expected}, as many as joint_names");
+            return Err(MovesError::new(positions.place(&place("positions")), what, HELP));
+        }
+        times.push(seconds(point.get("time_from_start"), point, || place("time_from_start"))?);
+        for (key, value) in point.members() {
+            let own = ["positions", "time_from_start"].contains(&key);
+            let filled = !value.is_list() || value.items().next().is_some();
+            if !own && filled && !dropped.contains(&key) && dropped.len() < 8 {
                 dropped.push(key);
             }
         }
     }
-    let mut notes = vec!["A JointTrajectory is in rad and m: rad is assumed of every joint.".to_owned()];
     if !dropped.is_empty() {
-        notes.push(format!("The points' {} are left out: they follow from the positions.", dropped.join(", ")));
+        notes.push(format!("The points' {} are left out: positions and times are read.", dropped.join(", ")));
     }
-    let channels = names.iter().map(|name| Channel { name: (*name).to_owned(), unit: None }).collect();
-    let fields = found.as_object().into_iter().flatten().filter(|(key, _)| *key != "joint_names" && *key != "points");
-    let extra = Extra { fields: fields.map(|(key, value)| (key.clone(), value.clone())).collect(), ..Extra::default() };
+    let channels = labels.iter().map(|name| Channel { name: name.clone(), unit: None }).collect();
+    let fields = whole.members().filter(|(key, _)| !["joint_names", "points"].contains(key));
+    let fields = records::fields(fields, text.len())?;
+    let extra = Extra { fields, ..Extra::default() };
     let place = Box::new(|frame| format!("point {frame}"));
-    Draft { format: Format::Trajectory, channels, times: Some(times), fps: None, values, extra, notes, place }
+    Draft { format: Format::Trajectory, channels, labels, times: Some(times), fps: None, values, extra, notes, place }
         .finish(options)
 }
 
-/// The map with joint names and points, also one inside others: goals of actions, launch files.
-fn trajectory(value: &Value, depth: usize) -> Option<&Value> {
-    let map = value.as_object()?;
-    if map.contains_key("joint_names") && map.contains_key("points") {
-        return Some(value);
+/// The map with joint names and points, also one inside others, and how deep: goals of actions, launch files.
+fn trajectory(value: Node<'_>, depth: usize) -> Option<(Node<'_>, usize)> {
+    if value.get("joint_names").is_some() && value.get("points").is_some() {
+        return Some((value, depth));
     }
-    (depth < 8).then(|| map.values().find_map(|inner| trajectory(inner, depth + 1)))?
+    let inside = (depth < 8).then(|| value.members().find_map(|(_, inner)| trajectory(inner, depth + 1)));
+    inside.flatten()
 }
 
 /// A duration: `{sec, nanosec}`, `{secs, nsecs}`, or a number of seconds.
-fn seconds(value: &Value, place: impl Fn() -> String) -> Result<f64, MovesError> {
-    if value.is_number() {
-        return finite(value, place);
+fn seconds(value: Option<Node<'_>>, point: Node<'_>, place: impl Fn() -> String) -> Result<f64, MovesError> {
+    let Some(value) = value else {
+        return Err(MovesError::new(point.place(&place()), "found none, expected sec and nanosec", HELP));
+    };
+    if !value.is_map() {
+        return value.finite(place);
     }
     let part = |keys: [&str; 2]| keys.into_iter().find_map(|key| value.get(key));
     let (Some(whole), Some(rest)) = (part(["sec", "secs"]), part(["nanosec", "nsecs"])) else {
-        return Err(MovesError::new(place(), "found no sec and nanosec, expected both", HELP));
+        return Err(MovesError::new(value.place(&place()), "found no sec and nanosec, expected both", HELP));
     };
-    Ok(finite(whole, &place)? + 1e-9 * finite(rest, &place)?)
+    Ok(whole.finite(&place)? + 1e-9 * rest.finite(&place)?)
 }
 
 /// Writes a trajectory: positions in rad and m.
-pub(super) fn write(moves: &Moves) -> Value {
-    let si: Vec<f64> = moves
-        .channels
-        .iter()
-        .map(|channel| match channel.unit {
-            Some(Unit::Degrees) => 1f64.to_radians(),
-            Some(Unit::Millimetres) => 1e-3,
-            _ => 1.0,
-        })
-        .collect();
-    let point = |frame: usize| {
-        let positions: Vec<f64> = moves.frame(frame).iter().zip(&si).map(|(x, unit)| x * unit).collect();
-        let nanoseconds = (moves.times[frame] * 1e9).round() as u64;
-        json!({
-            "positions": positions,
-            "time_from_start": {"sec": nanoseconds / 1_000_000_000, "nanosec": nanoseconds % 1_000_000_000},
-        })
+pub(super) fn write(moves: &Moves) -> String {
+    let si = |channel: &Channel| match channel.unit {
+        Some(Unit::Degrees) => 1f64.to_radians(),
+        Some(Unit::Millimetres) => 1e-3,
+        _ => 1.0,
     };
-    let names: Vec<&str> = moves.channels.iter().map(|channel| channel.name.as_str()).collect();
-    let mut whole = moves.extra.fields.clone();
-    whole.insert("joint_names".into(), json!(names));
-    whole.insert("points".into(), (0..moves.frames()).map(point).collect());
-    Value::Object(whole)
+    let mut out = String::new();
+    for (key, value) in &moves.extra.fields {
+        quote(key, &mut out);
+        // JSON is YAML. Writing to a String cannot fail.
+        let _ = writeln!(out, ": {value}");
+    }
+    out.push_str("joint_names:\n");
+    for channel in &moves.channels {
+        out.push_str("- ");
+        quote(&channel.name, &mut out);
+        out.push('\n');
+    }
+    out.push_str("points:\n");
+    for (frame, time) in moves.times.iter().enumerate() {
+        let positions = moves.frame(frame).iter().zip(&moves.channels).map(|(x, own)| yaml_number(x * si(own)));
+        let positions = positions.collect::<Vec<_>>().join(", ");
+        let nanoseconds = (time * 1e9).round() as u64;
+        let (sec, nanosec) = (nanoseconds / 1_000_000_000, nanoseconds % 1_000_000_000);
+        let _ = writeln!(out, "- positions: [{positions}]\n  time_from_start: {{sec: {sec}, nanosec: {nanosec}}}");
+    }
+    out
+}
+
+/// A number that readers of YAML 1.1 take for one: with a point, and a sign in the exponent.
+fn yaml_number(x: f64) -> String {
+    let text = number(x);
+    match text.split_once('e') {
+        Some((digits, power)) => {
+            let point = if digits.contains('.') { "" } else { ".0" };
+            let sign = if power.starts_with('-') { "" } else { "+" };
+            format!("{digits}{point}e{sign}{power}")
+        }
+        None => text,
+    }
 }

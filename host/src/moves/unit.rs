@@ -18,6 +18,8 @@ pub enum Unit {
     Ticks,
     /// Length of a servo's pulse, us.
     Microseconds,
+    /// Hundredths of a joint's range.
+    Percent,
 }
 
 impl Unit {
@@ -30,6 +32,7 @@ impl Unit {
             Self::Millimetres => "mm",
             Self::Ticks => "ticks",
             Self::Microseconds => "us",
+            Self::Percent => "percent",
         }
     }
 
@@ -42,6 +45,7 @@ impl Unit {
             "mm" | "millimetre" | "millimetres" | "millimeter" | "millimeters" => Self::Millimetres,
             "tick" | "ticks" | "steps" => Self::Ticks,
             "us" | "µs" | "μs" | "microseconds" => Self::Microseconds,
+            "percent" | "pct" | "%" => Self::Percent,
             _ => return None,
         })
     }

@@ -31,6 +31,9 @@ pub fn write(corpus: &Path) {
     for (name, text) in robots() {
         put("urdf", name, text.as_bytes());
     }
+    for (name, text) in moves() {
+        put("moves", name, format!("{name}\0{text}").as_bytes());
+    }
     let maps = [
         (
             "whole.toml",
@@ -176,5 +179,35 @@ fn recordings() -> Vec<(&'static str, String)> {
             }),
         ),
         ("point.csv", table(&|_, _, _| "0".into())),
+    ]
+}
+
+/// Motions of machines, in every format.
+fn moves() -> Vec<(&'static str, &'static str)> {
+    vec![
+        ("table.csv", "# by hand\ntime_s,pan_deg,tilt [rad],eyes\n0,1.5,0.1,open\n0.02,2.5,0.2,\"half, shut\"\n"),
+        ("comma.csv", "t;pan_deg;lift_mm\n0;1,5;2\n0,02;1,75;3\n"),
+        ("lists.csv", "timestamp,episode_index,action\n0,0,\"[1, 2]\"\n0.1,0,[1.5 2.5]\n0,1,[9 9]\n"),
+        (
+            "joints.json",
+            "{\"unit\": \"deg\", \"fps\": 50, \"joints\": {\"pan\": [1, 2], \"t\\u00e9\": [3, 4e0]}, \"x\": [{\"a\": null}]}",
+        ),
+        ("frames.json", "{\"joint_names\": [\"a\", \"b_m\"], \"times\": [0, 1], \"frames\": [[1, 2], [3, 4]]}"),
+        ("records.json", "[{\"time\": 0, \"pan_deg\": 1, \"led\": \"red\"}, {\"time\": 0.1, \"pan_deg\": 2}]"),
+        (
+            "lines.jsonl",
+            "{\"timestamp\": 0, \"action\": [1, 2], \"task\": \"wave\"}\n{\"timestamp\": 0.1, \"action\": [1, 3]}\n",
+        ),
+        (
+            "reachy.json",
+            "{\"description\": \"a nod\", \"time\": [0, 0.01], \"set_target_data\": [{\"head\": [[1,0,0,0.01],[0,1,0,0],[0,0,1,0.02],[0,0,0,1]], \
+             \"antennas\": [0.1, -0.2], \"body_yaw\": 0.5, \"check_collision\": false}, {\"head\": [[0.6,-0.8,0,0],[0.8,0.6,0,0],[0,0,1,0],[0,0,0,1]], \
+             \"antennas\": [0.2, -0.3]}]}",
+        ),
+        (
+            "ros.yaml",
+            "header: {frame_id: base}\njoint_names: [pan, 'tilt']\npoints:\n- positions: [0.1, 2e-1]\n  velocities: []\n  time_from_start: {sec: 0, \
+             nanosec: 0}\n- positions:\n  - .5\n  - 1\n  time_from_start:\n    secs: 1\n    nsecs: 5\n---\n",
+        ),
     ]
 }
