@@ -25,6 +25,7 @@ mod output;
 mod pictures;
 mod precision;
 mod quantize;
+mod robot;
 mod score;
 mod synth;
 mod train;
@@ -73,6 +74,8 @@ enum Command {
     Quantize(quantize::Args),
     Score(score::Args),
     Limits(limits::Args),
+    #[command(subcommand)]
+    Robot(robot::Task),
     Export(export::Args),
     Completions(completions::Args),
     Face(face::Args),
@@ -111,6 +114,7 @@ fn dispatch(cli: Cli) -> miette::Result<()> {
         Command::Quantize(args) => quantize::run(&args),
         Command::Score(args) => score::run(&args),
         Command::Limits(args) => limits::run(&args),
+        Command::Robot(task) => robot::run(&task),
         Command::Export(args) => export::run(&args),
         Command::Completions(args) => completions::run(&args),
         Command::Face(args) => face::run(&args),

@@ -4,6 +4,8 @@ use std::collections::HashMap;
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
+use crate::clip::map::nearest;
+
 /// Followers of followers: at most so many in a row.
 const LONGEST: usize = 32;
 
@@ -73,12 +75,20 @@ pub struct Robot {
     pub name: String,
     /// Its joints.
     pub joints: Vec<RobotJoint>,
+    /// What was assumed or left out beside the joints, one sentence each.
+    pub notes: Vec<String>,
 }
 
 impl Robot {
     /// Index of the joint with this name.
     pub fn find(&self, name: &str) -> Option<usize> {
         self.joints.iter().position(|joint| joint.name == name)
+    }
+
+    /// The joint with a coordinate of its own whose name is nearest to a misspelt one.
+    pub fn nearest(&self, name: &str) -> Option<String> {
+        let all = self.joints.iter().enumerate().filter(|(at, _)| self.leads(*at));
+        nearest(name, all.map(|(_, joint)| joint.name.as_str()))
     }
 
     /// The joint and those that carry it, outwards in.
@@ -132,6 +142,21 @@ impl Robot {
             }
         }
         frames.into_iter().flatten().collect()
+    }
+
+    /// The frame of every link in the root link's: the root link itself, then the link that each joint moves, in the joints' order.
+    /// `values` as [`placed`](Self::placed) takes them; joints beyond them are at 0.
+    pub fn link_frames(&self, values: &[f64]) -> Vec<(String, Isometry3<f64>)> {
+        let root = self.root().unwrap_or_else(|| "root".to_owned());
+        let frames = self.placed(&|at| values.get(at).copied().unwrap_or(0.0));
+        let moved = self.joints.iter().zip(frames).map(|(joint, frame)| (joint.child.clone(), frame));
+        std::iter::once((root, Isometry3::identity())).chain(moved).collect()
+    }
+
+    /// Whether a joint has a coordinate of its own: it moves, and follows no other.
+    pub fn leads(&self, joint: usize) -> bool {
+        let joint = &self.joints[joint];
+        joint.mimic.is_none() && matches!(joint.motion, Motion::Revolute | Motion::Continuous | Motion::Prismatic)
     }
 
     /// The value of every joint: `own` of those that lead, `multiplier x + offset` of those that follow one, also by way of others.

@@ -3,14 +3,18 @@
 //! | file | holds |
 //! |---|---|
 //! | `description` | [`Robot`]: joints in a tree, in the frame of the root link |
-//! | `urdf` | [`Robot::parse`]: from a URDF |
+//! | `urdf` | [`Robot::read`], [`Robot::parse`]: from a URDF |
+//! | `mjcf` | the same from an MJCF |
 //! | `servos` | [`ServoTable`]: ids, units, zeros, bounds of servos |
 //! | `machine` | [`Machine`]: a robot as packs hold it: rig, limits, servos |
+//! | [`retarget`] | a person's motion on a robot: inverse kinematics of whole chains |
 //! | `error` | [`RobotError`]: place, what was found, what to do |
 
 mod description;
 mod error;
 mod machine;
+mod mjcf;
+pub mod retarget;
 mod servos;
 mod urdf;
 

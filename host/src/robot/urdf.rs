@@ -4,15 +4,31 @@
 //! (1, 0, 0) unless given.
 
 use std::collections::{HashMap, HashSet};
+use std::path::Path;
 
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use roxmltree::{Document, Node};
 
-use super::{Mimic, Motion, Robot, RobotError, RobotJoint};
+use super::{Mimic, Motion, Robot, RobotError, RobotJoint, mjcf};
+use crate::files;
 
 impl Robot {
-    /// Reads the text of a URDF.
+    /// Reads a robot's description: a URDF or an MJCF, told by its root element. An MJCF may include files of its folder.
+    pub fn read(path: &Path) -> Result<Self, RobotError> {
+        let text = files::read_text(path).map_err(|error| {
+            let help = "check the path; the file is text in UTF-8";
+            RobotError::new(path.display().to_string(), format!("cannot be read: {error}"), help)
+        })?;
+        let folder = path.parent().filter(|_| path != Path::new("-"));
+        Self::parse_in(&text, folder).map_err(|error| error.in_file(path))
+    }
+
+    /// As [`read`](Self::read), of a text without a folder: an MJCF that includes files is refused.
     pub fn parse(text: &str) -> Result<Self, RobotError> {
+        Self::parse_in(text, None)
+    }
+
+    fn parse_in(text: &str, folder: Option<&Path>) -> Result<Self, RobotError> {
         crowded(text)?;
         let document = Document::parse(text).map_err(|error| {
             RobotError::new(
@@ -22,6 +38,9 @@ impl Robot {
             )
         })?;
         let root = document.root_element();
+        if root.tag_name().name() == "mujoco" {
+            return mjcf::parse(text, folder);
+        }
         let ends: Vec<usize> = text.match_indices('\n').map(|(at, _)| at).collect();
         let line = |node: Node| 1 + ends.partition_point(|end| *end < node.range().start) as u32;
         if let Some(node) = root.descendants().find(|node| node.tag_name().namespace().is_some_and(is_xacro)) {
@@ -34,8 +53,8 @@ impl Robot {
         if root.tag_name().name() != "robot" {
             return Err(RobotError::new(
                 format!("line {}", line(root)),
-                format!("found <{}>, expected <robot>", root.tag_name().name()),
-                "a URDF is one <robot> element with links and joints; SDF and MJCF can be converted to it",
+                format!("found <{}>, expected <robot> of a URDF or <mujoco> of an MJCF", root.tag_name().name()),
+                "a URDF is one <robot> element with links and joints; an SDF can be converted to it",
             ));
         }
         let elements = |name: &'static str| root.children().filter(move |node| node.has_tag_name(name));
@@ -71,7 +90,7 @@ impl Robot {
             return Err(RobotError::new("<robot>", "found no joint, expected at least one", "is this the whole file?"));
         }
         let name = root.attribute("name").unwrap_or("robot").to_owned();
-        Ok(Self { name, joints: tree(joints)? })
+        Ok(Self { name, joints: tree(joints)?, notes: Vec::new() })
     }
 }
 
@@ -79,7 +98,7 @@ impl Robot {
 const ATTRIBUTES: usize = 1000;
 
 /// Refuses an element with more attributes than any robot's.
-fn crowded(text: &str) -> Result<(), RobotError> {
+pub(super) fn crowded(text: &str) -> Result<(), RobotError> {
     let skipped = [("!--", "-->"), ("![CDATA[", "]]>"), ("?", "?>")];
     let mut at = 0;
     while let Some(open) = text[at..].find('<') {
@@ -103,7 +122,7 @@ fn crowded(text: &str) -> Result<(), RobotError> {
                 let line = 1 + text[..start].matches('\n').count();
                 return Err(RobotError::new(
                     format!("line {line}"),
-                    format!("found an element with more than {ATTRIBUTES} attributes, expected a URDF"),
+                    format!("found an element with more than {ATTRIBUTES} attributes, expected a robot's description"),
                     "its elements have ten attributes at most: is this the right file?",
                 ));
             }
