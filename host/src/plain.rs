@@ -49,6 +49,11 @@ pub fn message(message: &str) -> String {
     message.split('\n').map(cut).collect::<Vec<_>>().join("\n")
 }
 
+/// A name as a cell of CSV (RFC 4180).
+pub fn quoted(name: &str) -> String {
+    if name.contains([',', '"', '\n', '\r']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name.to_owned() }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -11,6 +11,8 @@ use kinesic::{LimitState, Limiter, Pipeline, PipelineState, Servos, Translator, 
 use kinesic_host::moves::{self, Options};
 use kinesic_host::pack::PackFile;
 use kinesic_host::robot::{Defaults, Machine, Robot, ServoTable};
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
 use servos::{FPS, antennas};
 
 /// The head with two antennas: ticks, ticks the other way, degrees about 90, pulses.
@@ -143,6 +145,82 @@ fn a_mood_learned_from_a_robot_s_own_recordings_ends_in_servo_positions_with_the
     assert_eq!(servos.commands(&out).map(|command| command.id).collect::<Vec<_>>(), [11, 12, 3, 4]);
 }
 
+/// A greeting at a mood: one sequence of poses; the mood makes it larger and faster, and lifts the antennas.
+fn greeting(mood: f64, seed: u64) -> String {
+    const KEYS: [(f64, [f64; 4]); 6] = [
+        (0.0, [0.0; 4]),
+        (0.12, [0.2, -0.2, 0.2, 0.2]),
+        (0.25, [0.2, 0.15, 0.0, 0.1]),
+        (0.55, [-0.3, 0.1, 0.1, 0.25]),
+        (0.75, [-0.35, -0.1, 0.3, 0.1]),
+        (1.0, [0.0; 4]),
+    ];
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut about = |share: f64| 1.0 + share * random.random_range(-1.0..1.0);
+    let (seconds, size) = ((3.6 - 1.6 * mood) * about(0.03), 0.5 + 0.8 * mood);
+    let keys = KEYS.map(|(at, pose)| (at, pose.map(|x| x * about(0.06))));
+    let frames = (seconds * FPS) as usize;
+    let mut text = "time_s,pan_rad,tilt_rad,left antenna_rad,right antenna_rad\n".to_owned();
+    for frame in 0..=frames {
+        let at = frame as f64 / frames as f64;
+        let piece = keys.windows(2).find(|pair| at <= pair[1].0 + 1e-9).unwrap();
+        let x = (at - piece[0].0) / (piece[1].0 - piece[0].0);
+        // Minimum jerk from pose to pose.
+        let part = x * x * x * (10.0 + x * (6.0 * x - 15.0));
+        let lift = [0.0, -0.1, 0.25, 0.25].map(|lift| lift * mood * (std::f64::consts::PI * at).sin());
+        let cell =
+            |servo: usize| size * (piece[0].1[servo] + part * (piece[1].1[servo] - piece[0].1[servo])) + lift[servo];
+        let cells: Vec<String> = (0..4).map(|servo| format!("{:.5}", cell(servo))).collect();
+        text += &format!("{},{}\n", frame as f64 / FPS, cells.join(","));
+    }
+    text
+}
+
+#[test]
+fn a_mood_dial_gives_the_mood_that_it_is_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    std::fs::write(at.join("desk.toml"), TABLE).unwrap();
+    kinesic(at, &["robot", "import", "desk.toml", "--out", "desk.kin"]).unwrap();
+    let mut labels = "file\tmood\ttake\n".to_owned();
+    for take in 0..6 {
+        for (step, mood) in [0.0, 0.25, 0.5, 0.75, 1.0].into_iter().enumerate() {
+            let name = format!("greeting-{take}-{step}.csv");
+            std::fs::write(at.join(&name), greeting(mood, 10 * take + step as u64)).unwrap();
+            labels += &format!("{name}\t{mood}\t{take}\n");
+        }
+    }
+    std::fs::write(at.join("moods.tsv"), labels).unwrap();
+    let train = [
+        "train",
+        "emotion",
+        "--robot",
+        "desk.kin",
+        "--labels",
+        "moods.tsv",
+        "--attribute",
+        "mood",
+        "--no-report",
+        "--out",
+        "mood.kin",
+    ];
+    kinesic(at, &train).unwrap();
+    // Played, limited, written as servo numbers, and read again from the file.
+    let asked: Vec<f64> = (0..=20).map(|step| f64::from(step) / 20.0).collect();
+    let read = |mood: &f64| {
+        kinesic(at, &["synth", "mood.kin", "--strength", &mood.to_string(), "--fps", "50", "--out", "greet.csv"])
+            .unwrap();
+        let text = kinesic(at, &["score", "mood.kin", "greet.csv", "--json"]).unwrap();
+        let report: serde_json::Value = serde_json::from_str(&text).unwrap();
+        report["clips"][0]["strength"][0].as_f64().unwrap()
+    };
+    let found: Vec<f64> = asked.iter().map(read).collect();
+    let worst = found.iter().zip(&asked).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let rank = kinesic_host::learn::spearman(&asked, &found);
+    println!("asked of a dial and read from servo positions: Spearman {rank:.4}, off by at most {worst:.3}");
+    assert!(rank > 0.99 && worst < 0.1, "{found:?}");
+}
+
 #[test]
 fn a_description_becomes_a_machine_of_all_its_moving_joints() {
     let urdf = r#"<robot name="odd">
@@ -188,6 +266,22 @@ fn a_description_becomes_a_machine_of_all_its_moving_joints() {
 }
 
 #[test]
+fn a_trajectory_of_ros_is_in_radians_whatever_the_servos_take() {
+    let machine = Machine::of_table(&ServoTable::parse(TABLE).unwrap(), 50.0, Defaults::default()).unwrap();
+    let point = |second: usize| {
+        format!("- positions: [0.1, 0.2, 0.3, 0.4]\n  time_from_start: {{sec: {second}, nanosec: 0}}\n")
+    };
+    let text = format!("joint_names: [pan, tilt, left antenna, right antenna]\npoints:\n{}{}", point(0), point(1));
+    let moves = moves::parse(text.as_bytes(), Path::new("m.yaml"), &Options::default()).unwrap();
+    let clip = machine.clip(&moves, None).unwrap();
+    assert_eq!(clip.coordinates(0).unwrap()[..4], [0.1f32, 0.2, 0.3, 0.4].map(f64::from));
+    // Ticks are no radians on the way out either.
+    let folder = tempfile::tempdir().unwrap();
+    let error = machine.moves(&clip, Some(&moves)).write(&folder.path().join("m.yaml")).unwrap_err();
+    assert!(error.to_string().contains("'pan' is in ticks"), "{error}");
+}
+
+#[test]
 fn sliders_and_turns_are_played_as_they_are() {
     let table =
         "[[servo]]\nname = \"lift\"\nunit = \"mm\"\nmin = 0\nmax = 200\n[[servo]]\nname = \"reel\"\nunit = \"deg\"\n";
@@ -222,11 +316,16 @@ fn what_does_not_fit_is_refused_with_joint_found_and_expected() {
     assert!(refused.contains("'pan'") && refused.contains("ticks") && refused.contains("--angles deg"), "{refused}");
     let refused =
         inspect("c.csv", &format!("t,pan_mm,tilt_deg,left_antenna_deg,right_antenna_deg\n{rows}")).unwrap_err();
-    assert!(refused.contains("'pan'") && refused.contains("millimetres"), "{refused}");
+    assert!(refused.contains("'pan'") && refused.contains("found mm"), "{refused}");
     // Named as people do, in the servos' own numbers.
     let fits = "0,2100,2000,91,1500\n0.02,2110,2000,92,1510\n";
     let text = inspect("d.csv", &format!("t,Pan,TILT,left-antenna,rightAntenna\n{fits}")).unwrap();
-    assert!(text.contains("Fits the robot 'desk robot'") && text.contains("names no unit"), "{text}");
+    assert!(
+        text.contains("Fits the robot 'desk robot'")
+            && text.contains("names no unit")
+            && text.contains("left antenna (deg)"),
+        "{text}"
+    );
     // A robot's motion without a robot, and a body's clip for a robot.
     let alone = kinesic(at, &["export", "d.csv", "--out", "x.bvh"]).unwrap_err();
     assert!(alone.contains("--robot ROBOT.kin"), "{alone}");

@@ -9,6 +9,7 @@ use std::fmt::Write;
 use super::Clip;
 use super::bvh::euler;
 use super::bvh::write::{WriteError, check};
+use crate::plain::quoted;
 
 impl Clip {
     /// The table, see the module. Refuses what the BVH writer refuses.
@@ -47,9 +48,4 @@ fn push(out: &mut String, cell: &str) {
 fn decimals(value: f64) -> String {
     // No negative zero.
     format!("{:.6}", (value * 1e6).round() / 1e6 + 0.0)
-}
-
-/// A name as CSV wants it (RFC 4180).
-fn quoted(name: &str) -> String {
-    if name.contains([',', '"']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name.to_owned() }
 }

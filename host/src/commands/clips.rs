@@ -55,13 +55,8 @@ pub struct Reading {
 
 /// A unit of angles from the command line.
 fn angles(text: &str) -> Result<moves::Unit, String> {
-    match text {
-        "deg" => Ok(moves::Unit::Degrees),
-        "rad" => Ok(moves::Unit::Radians),
-        "ticks" => Ok(moves::Unit::Ticks),
-        "us" => Ok(moves::Unit::Microseconds),
-        _ => Err("expected deg, rad, ticks or us".to_owned()),
-    }
+    let angle = |unit: &moves::Unit| !matches!(unit, moves::Unit::Metres | moves::Unit::Millimetres);
+    moves::unit_of(text).filter(angle).ok_or_else(|| "expected deg, rad, ticks or us".to_owned())
 }
 
 /// The robot of a pack that `kinesic robot import` made, or that was trained on one.

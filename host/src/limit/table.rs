@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::onto_body::kind_name;
 use super::{HeightLimit, JointLimit, LimitsModel, onto};
+use crate::plain::quoted;
 
 /// All limits by name.
 #[derive(Clone, Debug, Serialize)]
@@ -116,11 +117,6 @@ impl Table {
         }
         text
     }
-}
-
-/// A name as a field of a CSV table.
-fn quoted(name: &str) -> String {
-    if name.contains([',', '"', '\n', '\r']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name.to_owned() }
 }
 
 /// The double that prints as the single does.

@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::{Channel, Extra, Format, Moves, MovesError, Options, Unit};
+use super::{Channel, Extra, Format, Moves, MovesError, Options, Unit, unit_name};
 
 /// Angles beyond this are no radians: two turns.
 const TURNS: f64 = 4.0 * std::f64::consts::PI;
@@ -62,9 +62,9 @@ impl Draft {
 
     /// A place and an angle of one name keep their units in it: `Hips_z_m`, `Hips_z_deg`.
     fn tell_apart(&mut self) {
-        let mut units: HashMap<String, HashSet<Option<Unit>>> = HashMap::new();
+        let mut units: HashMap<String, HashSet<Option<&str>>> = HashMap::new();
         for channel in &self.channels {
-            units.entry(channel.name.clone()).or_default().insert(channel.unit);
+            units.entry(channel.name.clone()).or_default().insert(channel.unit.map(unit_name));
         }
         for channel in self.channels.iter_mut().filter(|channel| units[&channel.name].len() > 1) {
             channel.name = channel.header();

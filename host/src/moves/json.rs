@@ -6,7 +6,7 @@ use serde_json::{Map, Value};
 
 use super::build::{Draft, is_index, time_unit};
 use super::error::shown;
-use super::{Channel, Extra, Format, Moves, MovesError, Options, Unit, reachy};
+use super::{Channel, Extra, Format, Moves, MovesError, Options, Unit, reachy, unit_of};
 use crate::files;
 
 /// Names of lists in LeRobot's tables: what was told, then what was measured.
@@ -43,7 +43,7 @@ pub(super) fn parse(text: &str, path: &Path, options: &Options) -> Result<Moves,
 /// The unit of all channels, if the file says one.
 fn unit(whole: &Map<String, Value>) -> Result<Option<Unit>, MovesError> {
     let Some(value) = whole.get("unit").or_else(|| whole.get("units")) else { return Ok(None) };
-    match value.as_str().and_then(Unit::parse) {
+    match value.as_str().and_then(unit_of) {
         Some(unit) => Ok(Some(unit)),
         None => {
             Err(MovesError::new("unit", format!("found {value}, expected deg, rad, m, mm, ticks or us"), "correct it"))

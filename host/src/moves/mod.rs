@@ -28,7 +28,7 @@ use serde_json::{Map, Value};
 
 pub use error::MovesError;
 pub use read::{is_moves, parse, read};
-pub use unit::{Channel, Unit};
+pub use unit::{Channel, UNITS, Unit, unit_name, unit_of};
 
 /// Which format a file had, so that it can be written back in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -203,7 +203,7 @@ impl Moves {
             let steps = values.windows(2).zip(self.times.windows(2));
             ChannelSummary {
                 name: channel.name.clone(),
-                unit: channel.unit.map(Unit::name),
+                unit: channel.unit.map(unit_name),
                 min: values.iter().copied().fold(f64::INFINITY, f64::min),
                 max: values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
                 speed: steps.map(|(x, t)| (x[1] - x[0]).abs() / (t[1] - t[0])).fold(0.0, f64::max),

@@ -68,9 +68,10 @@ pub fn is_moves(path: &Path, head: &[u8]) -> bool {
     let text = String::from_utf8_lossy(head);
     let text = text.trim_start_matches('\u{feff}').trim_start();
     if text.starts_with(['{', '[']) {
-        return !text.contains("\"asset\"") && ["json", "jsonl", "ndjson"].contains(&extension.as_str());
+        let said = ["joints", "joint_names", "set_target_data", "time", "timestamp", "t"];
+        return !text.contains("\"asset\"") && said.iter().any(|key| text.contains(&format!("\"{key}\"")));
     }
-    if ["yaml", "yml"].contains(&extension.as_str()) || text.contains("joint_names:") {
+    if text.contains("joint_names:") {
         return true;
     }
     extension == "csv" && table::is_motion(text)

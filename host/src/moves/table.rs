@@ -108,7 +108,7 @@ fn columns(
                 timed = true;
                 Column::Time(seconds)
             }
-            _ if is_index(name) => Column::Index,
+            _ if is_index(name) && counts(rows.iter().map(|(_, row)| cell(row, at))) => Column::Index,
             // Hardly a number in it: text.
             _ if numbers == 0 || 10 * numbers < rows.len() => Column::Extra,
             _ => Column::Joint(Channel::from_header(name)),
@@ -153,6 +153,16 @@ fn columns(
         place: Box::new(move |frame| format!("line {}", lines.get(frame).copied().unwrap_or_default())),
     };
     draft.finish(options)
+}
+
+/// Whether numbers are those of frames: whole, and never falling. A finger may be called index.
+fn counts(numbers: impl Iterator<Item = Option<f64>>) -> bool {
+    let mut last = f64::NEG_INFINITY;
+    numbers.into_iter().all(|number| {
+        let known = number.is_some_and(|x| x.fract() == 0.0 && x >= last);
+        last = number.unwrap_or(last);
+        known
+    })
 }
 
 /// LeRobot's rows as JSON records: the cells of lists are `[0.1, 0.2]`, or `[0.1 0.2]` as numpy prints them.

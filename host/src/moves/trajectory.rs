@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::build::Draft;
 use super::error::shown;
 use super::json::finite;
-use super::{Channel, Extra, Format, Moves, MovesError, Options, Unit};
+use super::{Channel, Extra, Format, Moves, MovesError, Options, Unit, unit_name};
 
 const HELP: &str = "as in  joint_names: [pan]  points: [{positions: [0.1], time_from_start: {sec: 0, nanosec: 0}}]";
 
@@ -55,7 +55,7 @@ pub(super) fn parse(text: &str, options: &Options) -> Result<Moves, MovesError> 
             }
         }
     }
-    let mut notes = vec!["A JointTrajectory is in rad and m: rad is assumed of every joint.".to_owned()];
+    let mut notes = vec!["Positions are taken as rad, and of sliders as m, as ROS has them.".to_owned()];
     if !dropped.is_empty() {
         notes.push(format!("The points' {} are left out: they follow from the positions.", dropped.join(", ")));
     }
@@ -88,8 +88,13 @@ fn seconds(value: &Value, place: impl Fn() -> String) -> Result<f64, MovesError>
     Ok(finite(whole, &place)? + 1e-9 * finite(rest, &place)?)
 }
 
-/// Writes a trajectory: positions in rad and m.
-pub(super) fn write(moves: &Moves) -> Value {
+/// Writes a trajectory: positions in rad and m. Numbers that only a servo knows are refused.
+pub(super) fn write(moves: &Moves) -> Result<Value, MovesError> {
+    if let Some(channel) = moves.channels.iter().find(|channel| channel.unit.is_some_and(Unit::is_whole)) {
+        let found = channel.unit.map_or("", unit_name);
+        let what = format!("joint '{}' is in {found}, a JointTrajectory in rad and m", channel.name);
+        return Err(MovesError::new("", what, "write .csv or .json"));
+    }
     let si: Vec<f64> = moves
         .channels
         .iter()
@@ -111,5 +116,5 @@ pub(super) fn write(moves: &Moves) -> Value {
     let mut whole = moves.extra.fields.clone();
     whole.insert("joint_names".into(), json!(names));
     whole.insert("points".into(), (0..moves.frames()).map(point).collect());
-    Value::Object(whole)
+    Ok(Value::Object(whole))
 }

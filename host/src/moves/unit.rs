@@ -1,50 +1,35 @@
 //! Units of channels, and how names carry them.
 
-use serde::Serialize;
+pub use kinesic::servo::Unit;
 
-/// What the numbers of a channel count.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Unit {
-    /// rad.
-    Radians,
-    /// Degrees.
-    Degrees,
-    /// m.
-    Metres,
-    /// mm.
-    Millimetres,
-    /// Steps of an encoder or of a smart servo.
-    Ticks,
-    /// Length of a servo's pulse, us.
-    Microseconds,
+/// Short names of the units, as in headers, tables of servos and on the command line.
+pub const UNITS: [(&str, Unit); 6] = [
+    ("rad", Unit::Radians),
+    ("deg", Unit::Degrees),
+    ("m", Unit::Metres),
+    ("mm", Unit::Millimetres),
+    ("ticks", Unit::Ticks),
+    ("us", Unit::Microseconds),
+];
+
+/// Short name of a unit.
+pub fn unit_name(unit: Unit) -> &'static str {
+    UNITS.iter().find(|(_, known)| *known == unit).map_or("", |(name, _)| name)
 }
 
-impl Unit {
-    /// Short name, as in a header's suffix.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Radians => "rad",
-            Self::Degrees => "deg",
-            Self::Metres => "m",
-            Self::Millimetres => "mm",
-            Self::Ticks => "ticks",
-            Self::Microseconds => "us",
-        }
-    }
-
-    /// The unit that a word means, in any case.
-    pub fn parse(word: &str) -> Option<Self> {
-        Some(match word.trim().to_lowercase().as_str() {
-            "rad" | "radian" | "radians" => Self::Radians,
-            "deg" | "degree" | "degrees" | "°" => Self::Degrees,
-            "m" | "metre" | "metres" | "meter" | "meters" => Self::Metres,
-            "mm" | "millimetre" | "millimetres" | "millimeter" | "millimeters" => Self::Millimetres,
-            "tick" | "ticks" | "steps" => Self::Ticks,
-            "us" | "µs" | "μs" | "microseconds" => Self::Microseconds,
-            _ => return None,
-        })
-    }
+/// The unit that a word means, in any case: a short name, or one that people write in headers.
+pub fn unit_of(word: &str) -> Option<Unit> {
+    let word = word.trim().to_lowercase();
+    let short = UNITS.iter().find(|(name, _)| *name == word).map(|(_, unit)| *unit);
+    short.or(match word.as_str() {
+        "radian" | "radians" => Some(Unit::Radians),
+        "degree" | "degrees" | "°" => Some(Unit::Degrees),
+        "metre" | "metres" | "meter" | "meters" => Some(Unit::Metres),
+        "millimetre" | "millimetres" | "millimeter" | "millimeters" => Some(Unit::Millimetres),
+        "tick" | "steps" => Some(Unit::Ticks),
+        "µs" | "μs" | "microseconds" => Some(Unit::Microseconds),
+        _ => None,
+    })
 }
 
 /// One column of numbers.
@@ -62,7 +47,7 @@ impl Channel {
         let header = header.trim();
         let known = |name: &str, word: &str| {
             let name = name.trim();
-            Unit::parse(word).filter(|_| !name.is_empty()).map(|unit| Self { name: name.to_owned(), unit: Some(unit) })
+            unit_of(word).filter(|_| !name.is_empty()).map(|unit| Self { name: name.to_owned(), unit: Some(unit) })
         };
         let bracketed = [('[', ']'), ('(', ')')].into_iter().find_map(|(open, close)| {
             let (name, word) = header.strip_suffix(close)?.rsplit_once(open)?;
@@ -75,7 +60,7 @@ impl Channel {
 
     /// As a header: `pan_deg`, or `pan` without a unit.
     pub fn header(&self) -> String {
-        match self.unit.map(Unit::name) {
+        match self.unit.map(unit_name) {
             // A name that tells it from another one has its unit.
             Some(unit) if !self.name.ends_with(&format!("_{unit}")) => format!("{}_{unit}", self.name),
             _ => self.name.clone(),

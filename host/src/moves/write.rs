@@ -7,6 +7,7 @@ use serde_json::{Map, Value, json};
 
 use super::{Format, Moves, MovesError, reachy, trajectory};
 use crate::files::write_whole;
+use crate::plain::quoted;
 
 impl Moves {
     /// Writes the motion, whole or not at all, in the format that the name of the file says: `.csv`, `.json`, `.jsonl`, `.yaml`. A motion
@@ -18,7 +19,7 @@ impl Moves {
             "json" => self.to_json()?,
             "jsonl" | "ndjson" => self.to_lines(),
             "yaml" | "yml" => {
-                let whole = trajectory::write(self);
+                let whole = trajectory::write(self)?;
                 serde_norway::to_string(&whole).map_err(|error| MovesError::new("", error.to_string(), "write .csv"))?
             }
             _ => {
@@ -105,9 +106,4 @@ fn seconds(time: f64) -> f64 {
 /// As few digits as give the number back; no negative zero.
 fn plain(x: f64) -> f64 {
     x + 0.0
-}
-
-/// A name as CSV wants it (RFC 4180).
-fn quoted(name: &str) -> String {
-    if name.contains([',', '"', '\n', '\r']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name.to_owned() }
 }

@@ -411,7 +411,7 @@ impl Rig {
 }
 
 /// A frame with these coordinates.
-fn frame_of(coordinates: &[f64]) -> HostFrame {
+pub(crate) fn frame_of(coordinates: &[f64]) -> HostFrame {
     let mut frame = HostFrame::new();
     frame.coordinates_mut().iter_mut().zip(coordinates).for_each(|(to, from)| *to = *from as f32);
     frame

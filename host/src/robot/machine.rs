@@ -1,7 +1,7 @@
 //! A machine: servos in a tree, with limits and with the numbers that its servos take. What packs of robots hold.
 
 use kinesic::Pack;
-use kinesic::model::{Kind, LimitsMeta};
+use kinesic::model::{Kind, LimitsMeta, LoadError};
 use kinesic::rig::JointKind;
 use kinesic::servo::{NO_SERVO, Servos, Unit};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -251,30 +251,31 @@ impl Machine {
     /// The machine of a pack; `None` for a pack of a body.
     pub fn from_pack(pack: &Pack) -> Result<Option<Self>, RigError> {
         let Ok(table) = Servos::load(pack) else { return Ok(None) };
-        let rig = Rig::from_pack(pack)?;
-        let limits = LimitsModel::from_pack(pack)?;
-        let servo = |(joint, (kind, first)): (&Joint, (JointKind, usize))| {
-            let zero = table.command(first, 0.0);
-            let columns = (
-                pack.slice::<f32>("servo/scale", table.coordinates()),
-                pack.slice::<f32>("servo/zero", table.coordinates()),
-            );
-            let (Ok(scale), Ok(zeros)) = columns else { return None };
-            let units = pack.slice::<u16>("servo/units", table.coordinates()).ok()?;
-            (kind != JointKind::Fixed).then_some(Servo {
-                name: joint.name.clone(),
-                id: zero.map(|command| command.id),
-                unit: Unit::from_code(*units.get(first)?)?,
-                scale: *scale.get(first)?,
-                zero: *zeros.get(first)?,
-            })
+        let (rig, limits, count) = (Rig::from_pack(pack)?, LimitsModel::from_pack(pack)?, table.coordinates());
+        let units = pack.slice::<u16>("servo/units", count)?;
+        // A machine stands, and every joint that moves is one servo: a body's pack may not say that it has servos.
+        let single = rig.frames().places().filter(|(kind, _)| kind.coordinates() == 1).count();
+        if single == 0 || single != count {
+            let refused = LoadError::Shape { tensor: "servo/ids", found: count, expected: single };
+            return Err(RigError::Refused(refused));
+        }
+        let (scale, zero) = (pack.slice::<f32>("servo/scale", count)?, pack.slice::<f32>("servo/zero", count)?);
+        let moving =
+            rig.skeleton.joints.iter().zip(rig.frames().places()).filter(|(_, (kind, _))| *kind != JointKind::Fixed);
+        let servo = |(joint, (_, first)): (&Joint, (JointKind, usize))| Servo {
+            name: joint.name.clone(),
+            id: table.command(first, 0.0).map(|command| command.id),
+            // The device's view has checked it.
+            unit: Unit::from_code(units[first]).unwrap_or(Unit::Radians),
+            scale: scale[first],
+            zero: zero[first],
         };
-        let servos = rig.skeleton.joints.iter().zip(rig.frames().places()).filter_map(servo).collect();
+        let servos = moving.map(servo).collect();
         Ok(Some(Self { name: limits.name.clone(), rig, limits, servos, notes: Vec::new() }))
     }
 
     /// A pack of this machine: its rig, its limits and its servos, beside the models of `base` if there is one.
-    pub fn pack(&self, base: Option<&Pack>, provenance: &Provenance) -> Result<Vec<u8>, kinesic::LoadError> {
+    pub fn pack(&self, base: Option<&Pack>, provenance: &Provenance) -> Result<Vec<u8>, LoadError> {
         let tables = self.limits.tables(&self.rig)?;
         let metadata = base.map(Pack::metadata);
         let (kind, name) = metadata.map_or((Kind::Limits, self.name.as_str()), |data| (Kind::Style, data.name));

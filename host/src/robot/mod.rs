@@ -22,4 +22,4 @@ pub use description::{Mimic, Motion, Robot, RobotJoint};
 pub use error::RobotError;
 pub use machine::{Defaults, Machine, Servo};
 pub use motion::MotionError;
-pub use servos::{POSE, PoseEntry, ServoEntry, ServoTable, UNITS, unit_name};
+pub use servos::{POSE, PoseEntry, ServoEntry, ServoTable};

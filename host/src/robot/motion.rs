@@ -2,14 +2,14 @@
 
 use std::fmt::Write;
 
-use kinesic::servo::{Servos, Unit as ServoUnit};
+use kinesic::servo::Servos;
 
 use super::machine::{Machine, Servo};
-use super::{ServoEntry, ServoTable, unit_name};
+use super::{ServoEntry, ServoTable};
 use crate::clip::Clip;
 use crate::clip::map::nearest;
-use crate::moves::{Channel, Moves, Unit};
-use crate::rig::HostFrame;
+use crate::moves::{Channel, Format, Moves, Unit, unit_name};
+use crate::rig::{HostFrame, frame_of};
 
 /// Beyond its range by more than this, rad or m, and by more than a twentieth of it, a coordinate is said to be outside.
 const OUTSIDE: f64 = 0.02;
@@ -91,14 +91,17 @@ impl Machine {
         let mut notes = moves.notes.clone();
         let ranges = self.ranges();
         let mut values = vec![0.0; moves.frames() * self.servos.len()];
-        let mut assumed: Vec<&str> = Vec::new();
+        let mut assumed: Vec<String> = Vec::new();
         for (at, ((servo, column), range)) in self.servos.iter().zip(columns).zip(&ranges).enumerate() {
             let channel = &moves.channels[column];
-            let told = channel.unit.or(angles.filter(|_| !is_length(servo.unit)));
+            let length = is_length(servo.unit);
+            // A trajectory of ROS is in rad and m, whatever the servo takes.
+            let ros = (moves.format == Format::Trajectory).then_some(if length { Unit::Metres } else { Unit::Radians });
+            let told = channel.unit.or(ros).or(angles.filter(|_| !length));
             if told.is_none() {
-                assumed.push(&servo.name);
+                assumed.push(format!("{} ({})", servo.name, unit_name(servo.unit)));
             }
-            let unit = told.unwrap_or_else(|| of_servo(servo.unit));
+            let unit = told.unwrap_or(servo.unit);
             let to = Conversion::new(servo, unit)?;
             let raw = || moves.values.iter().skip(column).step_by(moves.channels.len());
             let found: Vec<f64> = raw().map(|x| to.coordinate(*x)).collect();
@@ -111,9 +114,8 @@ impl Machine {
         }
         if !assumed.is_empty() {
             notes.push(format!(
-                "The file names no unit for {}: the robot's own is assumed ({}). --angles deg or rad, or names like pan_deg, settle it.",
-                listed(&assumed),
-                unit_name(self.servos.iter().find(|servo| servo.name == assumed[0]).map_or(ServoUnit::Radians, |s| s.unit))
+                "The file names no unit: the robot's own is assumed for {}. --angles deg or rad, or names like pan_deg, settle it.",
+                listed(&assumed.iter().map(String::as_str).collect::<Vec<_>>())
             ));
         }
         let unknown: Vec<&str> = moves
@@ -125,21 +127,14 @@ impl Machine {
         if !unknown.is_empty() {
             notes.push(format!("Columns that are no joints of the robot are left out: {}.", listed(&unknown)));
         }
-        let frames: Vec<HostFrame> = values.chunks_exact(self.servos.len()).map(frame).collect();
-        let clip = self.rig.clip_of(&frames, 1.0 / moves.fps());
-        // As they are, not rounded to single precision.
-        let width = 3 * self.rig.rows();
-        let mut coordinates = vec![0.0; frames.len() * width];
-        for (to, from) in coordinates.chunks_exact_mut(width).zip(values.chunks_exact(self.servos.len())) {
-            to[..from.len()].copy_from_slice(from);
-        }
-        Ok(Clip { coordinates: Some(coordinates), notes, ..clip })
+        let frames: Vec<HostFrame> = values.chunks_exact(self.servos.len()).map(frame_of).collect();
+        Ok(Clip { notes, ..self.rig.clip_of(&frames, 1.0 / moves.fps()) })
     }
 
     /// What the servos take, in their own units, frame by frame: the device's own arithmetic. With the extras of the motion that it was made
     /// of.
     pub fn moves(&self, clip: &Clip, from: Option<&Moves>) -> Moves {
-        let channel = |servo: &Servo| Channel { name: servo.name.clone(), unit: Some(of_servo(servo.unit)) };
+        let channel = |servo: &Servo| Channel { name: servo.name.clone(), unit: Some(servo.unit) };
         let channels: Vec<Channel> = self.servos.iter().map(channel).collect();
         let mut values = Vec::with_capacity(clip.frames() * channels.len());
         for frame in self.rig.frames_of(clip) {
@@ -197,9 +192,9 @@ impl ServoTable {
                 self.servos.len() - 1
             });
             let servo = &mut self.servos[at];
-            let own = servo.unit.map(of_servo);
+            let own = servo.unit;
             if own.is_some() && channel.unit.is_some() && own != channel.unit {
-                let found = channel.unit.map_or_else(String::new, |unit| format!("{unit:?}").to_lowercase());
+                let found = channel.unit.map_or("", unit_name).to_owned();
                 return Err(MotionError::Unit { joint: servo.name.clone(), found, expected: "the servo's own unit" });
             }
             servo.zero = *value;
@@ -228,7 +223,7 @@ struct Conversion {
 impl Conversion {
     /// The servo's own numbers have its zero, its sign and its gear; angles and lengths in other units are the joint's.
     fn new(servo: &Servo, unit: Unit) -> Result<Self, MotionError> {
-        if of_servo(servo.unit) == unit {
+        if servo.unit == unit {
             return Ok(Self { zero: f64::from(servo.zero), scale: f64::from(servo.scale) });
         }
         let length = is_length(servo.unit);
@@ -241,7 +236,7 @@ impl Conversion {
                 let expected = if length { "m or mm" } else { "rad, deg, or the servo's own unit" };
                 return Err(MotionError::Unit {
                     joint: servo.name.clone(),
-                    found: format!("{other:?}").to_lowercase(),
+                    found: unit_name(other).to_owned(),
                     expected,
                 });
             }
@@ -285,12 +280,6 @@ fn fits(
     Ok(count)
 }
 
-fn frame(coordinates: &[f64]) -> HostFrame {
-    let mut frame = HostFrame::new();
-    frame.coordinates_mut().iter_mut().zip(coordinates).for_each(|(to, from)| *to = *from as f32);
-    frame
-}
-
 /// The same name, whatever its case and separators.
 fn same(a: &str, b: &str) -> bool {
     let plain =
@@ -298,20 +287,8 @@ fn same(a: &str, b: &str) -> bool {
     plain(a) == plain(b)
 }
 
-fn is_length(unit: ServoUnit) -> bool {
-    matches!(unit, ServoUnit::Metres | ServoUnit::Millimetres)
-}
-
-/// A servo's unit as a file's.
-fn of_servo(unit: ServoUnit) -> Unit {
-    match unit {
-        ServoUnit::Radians => Unit::Radians,
-        ServoUnit::Degrees => Unit::Degrees,
-        ServoUnit::Metres => Unit::Metres,
-        ServoUnit::Millimetres => Unit::Millimetres,
-        ServoUnit::Ticks => Unit::Ticks,
-        ServoUnit::Microseconds => Unit::Microseconds,
-    }
+fn is_length(unit: Unit) -> bool {
+    matches!(unit, Unit::Metres | Unit::Millimetres)
 }
 
 /// A few names, and how many more there are.

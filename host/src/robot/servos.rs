@@ -6,6 +6,7 @@ use toml::{Table, Value};
 
 use super::RobotError;
 use crate::clip::map::nearest;
+use crate::moves::{UNITS, unit_name};
 
 /// What the table says of one servo. Numbers are in the servo's own unit.
 #[derive(Clone, Debug, PartialEq)]
@@ -88,21 +89,6 @@ const SERVO: [&str; 14] = [
 ];
 const POSE_KEYS: [&str; 5] = ["name", "min", "max", "speed", "acceleration"];
 const SAMPLE: &str = "as in  [[servo]]  name = \"pan\"  id = 1  unit = \"deg\"  min = -90  max = 90";
-
-/// Names of the units in tables and headers.
-pub const UNITS: [(&str, Unit); 6] = [
-    ("rad", Unit::Radians),
-    ("deg", Unit::Degrees),
-    ("m", Unit::Metres),
-    ("mm", Unit::Millimetres),
-    ("ticks", Unit::Ticks),
-    ("us", Unit::Microseconds),
-];
-
-/// Name of a unit.
-pub fn unit_name(unit: Unit) -> &'static str {
-    UNITS.iter().find(|(_, known)| *known == unit).map_or("", |(name, _)| name)
-}
 
 impl ServoTable {
     /// Reads the text of a table.

@@ -1,8 +1,9 @@
 //! The coordinates of a robot as a table.
 
 use kinesic_host::limit::{Entry, Table};
+use kinesic_host::moves::unit_name;
 use kinesic_host::plain;
-use kinesic_host::robot::{Machine, Servo, unit_name};
+use kinesic_host::robot::{Machine, Servo};
 use serde::Serialize;
 
 /// One coordinate: what it may do, rad or m, and what its servo takes.
