@@ -183,6 +183,26 @@ fn no_bytes_make_it_panic() {
 }
 
 #[test]
+fn other_files_are_no_moves_and_packed_ones_are() {
+    for (name, text) in [
+        ("package.json", r#"{"name": "x", "version": "1.0"}"#),
+        ("config.yaml", "name: x\nvalues: [1, 2]\n"),
+        ("scene.json", r#"{"asset": {"version": "2.0"}, "time": 1}"#),
+        ("kinect.csv", "Timestamp,HipCenterX,HipCenterY\n0,1,2\n"),
+        ("notes.txt", "t,pan_deg\n0,1\n"),
+    ] {
+        assert!(!is_moves(Path::new(name), text.as_bytes()), "{name}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("nod.csv.gz");
+    let mut packed = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::default());
+    std::io::Write::write_all(&mut packed, CSV.as_bytes()).unwrap();
+    std::fs::write(&path, packed.finish().unwrap()).unwrap();
+    assert!(is_moves(&path, CSV.as_bytes()));
+    assert_eq!(read(&path, &Options::default()).unwrap(), of("nod.csv", CSV));
+}
+
+#[test]
 fn lines_are_the_file_s_own() {
     for (text, line) in [
         ("t,pan_deg\n0,1\n# a pause\n\n1,x\n2,3\n", "line 5"),

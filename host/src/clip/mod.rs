@@ -39,7 +39,7 @@ pub use error::ReadError;
 pub use map::{Canonical, JointMap, SkeletonMap};
 pub use mirror::MirrorError;
 pub use notes::NoteLog;
-pub use read::{ReadOptions, contents, gathered, is_moves, read, read_with};
+pub use read::{ReadOptions, contents, gathered, read, read_with};
 pub use resample::{Memory, ResampleError};
 pub use summary::Summary;
 pub use units::{Unit, UpAxis};

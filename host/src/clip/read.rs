@@ -61,10 +61,11 @@ pub fn read(path: impl AsRef<Path>) -> Result<Clip, ReadError> {
 pub fn read_with(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Clip, ReadError> {
     let path = path.as_ref();
     let (bytes, packed) = unpacked(slurp(path)?, path)?;
-    if is_moves(path, &bytes) {
+    let head = &bytes[..bytes.len().min(HEAD)];
+    if sniffed(head).is_none() && moves::is_moves(path, head) {
         return Err(ReadError::Machine { path: path.into() });
     }
-    let Some(reader) = reader_of(path, &bytes[..bytes.len().min(HEAD)]) else {
+    let Some(reader) = reader_of(path, head) else {
         return Err(ReadError::UnknownFormat { path: path.into(), found: describe(&bytes) });
     };
     let mut clip = (reader.parse)(&bytes, path, options)?;
@@ -73,12 +74,6 @@ pub fn read_with(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Clip, 
     }
     gathered(path, &clip.notes, options)?;
     Ok(clip)
-}
-
-/// Whether the content of a file is a motion in the joints of a machine.
-pub fn is_moves(path: &Path, bytes: &[u8]) -> bool {
-    let head = &bytes[..bytes.len().min(HEAD)];
-    sniffed(head).is_none() && moves::is_moves(path, head)
 }
 
 /// The content of a file, unpacked.

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use kinesic::Pack;
 use kinesic::model::{JointMeta, MAGIC, ModelMeta, VERSION};
-use kinesic_host::clip::{self, JointMap};
+use kinesic_host::clip::{self, Clip, JointMap, ReadError};
 use kinesic_host::engines::known;
 use kinesic_host::files;
 use kinesic_host::moves::Summary;
@@ -52,10 +52,12 @@ pub fn run(args: &Args) -> miette::Result<()> {
         return pack(&args.file, args.json);
     }
     let options = clip::ReadOptions { log: None, ..args.reading.options()? };
-    let machine = options.machine.is_some();
-    match clip::contents(&args.file) {
-        Ok(bytes) if machine || clip::is_moves(&args.file, &bytes) => moves(args, &bytes, options),
-        _ => clip(args, &options),
+    if options.machine.is_some() {
+        return moves(args, &options);
+    }
+    match clip::read_with(&args.file, &options) {
+        Err(ReadError::Machine { .. }) => moves(args, &options),
+        read => clip(args, &options, &read.into_diagnostic()?),
     }
 }
 
@@ -90,8 +92,8 @@ struct MovesReport {
 }
 
 /// A motion in the joints of a robot: as the file has it, and with a robot what was assumed on the way to its coordinates.
-fn moves(args: &Args, bytes: &[u8], options: clip::ReadOptions) -> miette::Result<()> {
-    let found = kinesic_host::moves::parse(bytes, &args.file, &options.moves)?;
+fn moves(args: &Args, options: &clip::ReadOptions) -> miette::Result<()> {
+    let found = kinesic_host::moves::read(&args.file, &options.moves)?;
     let mut robot = Vec::new();
     if let Some(machine) = &options.machine {
         let clip = machine.clip(&found, options.angles).map_err(|error| miette!("{}: {error}", args.file.display()))?;
@@ -122,8 +124,7 @@ fn moves(args: &Args, bytes: &[u8], options: clip::ReadOptions) -> miette::Resul
     Ok(())
 }
 
-fn clip(args: &Args, options: &clip::ReadOptions) -> miette::Result<()> {
-    let clip = clip::read_with(&args.file, options).into_diagnostic()?;
+fn clip(args: &Args, options: &clip::ReadOptions, clip: &Clip) -> miette::Result<()> {
     let map = JointMap::choose(&clip.skeleton, options.map.as_ref()).into_diagnostic()?;
     let name = |joint: usize| clip.skeleton.joints[joint].name.clone();
     let known = |map: &JointMap| {

@@ -81,7 +81,7 @@ fn check_folder(path: &Path) -> miette::Result<()> {
 pub fn write_motion(path: &Path, clip: &Clip, machine: Option<&Machine>, from: Option<&Moves>) -> miette::Result<()> {
     let picture = Format::of(path).is_some_and(|format| format != Format::Csv);
     match machine {
-        Some(machine) if !picture => machine.moves(clip, from).write(path).into_diagnostic(),
+        Some(machine) if !picture => Ok(machine.moves(clip, from).write(path)?),
         _ => clip.write(path).into_diagnostic(),
     }
 }

@@ -64,7 +64,9 @@ pub fn is_moves(path: &Path, head: &[u8]) -> bool {
     if head.starts_with(b"PAR1") {
         return true;
     }
-    let extension = path.extension().and_then(|found| found.to_str()).unwrap_or("").to_lowercase();
+    // What is packed has a name before that.
+    let name = path.file_name().and_then(|name| name.to_str()).unwrap_or("").to_lowercase();
+    let extension = name.strip_suffix(".gz").unwrap_or(&name).rsplit('.').next().unwrap_or("");
     let text = String::from_utf8_lossy(head);
     let text = text.trim_start_matches('\u{feff}').trim_start();
     if text.starts_with(['{', '[']) {
