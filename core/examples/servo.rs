@@ -29,6 +29,7 @@ static TABLE: LimitTable = LimitTable {
     upper: &[[1.5, 1.4, 2.2], [1.2, FREE, FREE]],
     velocity: &[[4.0, 4.0, 4.0], [4.0, FREE, FREE]],
     acceleration: &[[30.0, 30.0, 30.0], [30.0, FREE, FREE]],
+    jerk: &[],
     rest: &[[0.0, 0.0, 0.4], [0.0, FREE, FREE]],
 };
 

@@ -14,7 +14,7 @@
 //! | [`components`] | style components applied to a live pose or to a stored stream of weights | Phong 2018 |
 //! | [`emotion`] | strength of an emotion -> keyframes -> spline -> pose | Chan 2019 |
 //! | [`face`] | strength of a facial expression -> landmarks | Chan 2019 |
-//! | [`limit`] | the last stage: position, velocity and acceleration limits | |
+//! | [`limit`] | the last stage: position, velocity, acceleration and jerk limits | |
 //! | [`servo`] | a coordinate as the number that a servo takes | |
 //! | [`kernel`] | the few inner loops: matrix x vector, modal recursion, activations | |
 //!

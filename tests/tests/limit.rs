@@ -173,6 +173,7 @@ static SERVO_TABLE: LimitTable<'static> = LimitTable {
     upper: &[[1.5, 0.3, 2.2], [0.5, -0.2, 0.0]],
     velocity: &[[4.0, 0.5, 9.0], [2.0, 3.0, 0.0]],
     acceleration: &[[30.0, 4.0, 90.0], [300.0, 20.0, 0.0]],
+    jerk: &[],
     rest: &[[0.0, 0.1, 0.2], [0.0, -0.2, 0.0]],
 };
 

@@ -5,13 +5,22 @@ use crate::kernel::sqrt;
 /// Share of the acceleration that catches up with the target; the rest follows the target's own.
 pub(super) const CATCH_UP: f32 = 0.5;
 
-/// What one coordinate may do. Rates are per frame: `velocity dt` and `acceleration dt^2`.
+/// What one coordinate may do. Rates are per frame: `velocity dt`, `acceleration dt^2` and `jerk dt^3`; a jerk of 0 is no limit.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds {
     pub lower: f32,
     pub upper: f32,
     pub speed: f32,
     pub change: f32,
+    pub jerk: f32,
+}
+
+impl Bounds {
+    /// Frames that the longest stop takes under a jerk limit, about.
+    pub fn stop_frames(&self) -> f32 {
+        let change = self.change.min(sqrt(self.speed * self.jerk));
+        3.0 * change / self.jerk + self.speed / change
+    }
 }
 
 /// Where a coordinate is, how far it went in the last frame, and how far the last target was when it had.
@@ -44,7 +53,7 @@ impl Coordinate {
     /// has to catch up, and as many where it has to brake.
     #[inline(always)]
     pub fn advance(self, target: f32, bounds: &Bounds) -> Self {
-        let Bounds { lower, upper, speed, change } = *bounds;
+        let Bounds { lower, upper, speed, change, .. } = *bounds;
         let error = target - self.at;
         // The target's own step, and beside it what catches up with where the target was.
         let own = within(error - self.left, -speed, speed);
@@ -65,7 +74,7 @@ mod tests {
     extern crate std;
     use super::*;
 
-    const BOUNDS: Bounds = Bounds { lower: -1.0, upper: 0.8, speed: 0.05, change: 0.004 };
+    const BOUNDS: Bounds = Bounds { lower: -1.0, upper: 0.8, speed: 0.05, change: 0.004, jerk: 0.0 };
 
     #[test]
     fn reach_is_the_inverse_of_the_braking_distance() {

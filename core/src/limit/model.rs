@@ -1,7 +1,10 @@
 //! The limiter: a checked, immutable view of the tables.
 
+use core::iter::repeat;
+
 use super::axis::{Bounds, CATCH_UP, reach};
 use crate::engine::FromPack;
+use crate::kernel::sqrt;
 use crate::model::{LimitsMeta, LoadError, ModelMeta, Pack};
 use crate::rig::Rig;
 
@@ -17,6 +20,8 @@ pub struct LimitTable<'a> {
     pub velocity: &'a [[f32; 3]],
     /// Largest acceleration of each coordinate, rad/s^2 or m/s^2.
     pub acceleration: &'a [[f32; 3]],
+    /// Largest jerk of each coordinate, rad/s^3 or m/s^3; 0 for one without a jerk limit. May be empty: then none has one.
+    pub jerk: &'a [[f32; 3]],
     /// Coordinates at rest, where a joint starts and where it goes when frames fail to come.
     pub rest: &'a [[f32; 3]],
 }
@@ -51,6 +56,9 @@ pub(super) struct Limit {
 /// Steps a frame, rad or m, that single precision can still tell apart, and that are still numbers.
 const STEPS: core::ops::Range<f32> = 1e-6..1e6;
 
+/// A stop that takes more frames than this is not planned.
+const LONGEST_STOP: f32 = 1e4;
+
 /// Coordinates lie within this, rad or m.
 const FARTHEST: f32 = 100.0;
 
@@ -65,11 +73,16 @@ impl<'a, const ROWS: usize> Limiter<'a, ROWS> {
             .ok_or(LoadError::NoModel { expected: "joint limits" })?;
         let rig = Rig::load(pack)?;
         let rows = rig.rows();
+        let jerk = match pack.slice("limit/jerk", rows) {
+            Err(LoadError::NoTensor { .. }) => &[][..],
+            other => other?,
+        };
         let table = LimitTable {
             lower: pack.slice("limit/lower", rows)?,
             upper: pack.slice("limit/upper", rows)?,
             velocity: pack.slice("limit/velocity", rows)?,
             acceleration: pack.slice("limit/acceleration", rows)?,
+            jerk,
             rest: pack.slice("limit/rest", rows)?,
         };
         Self::new(rig, table, meta, metadata.frame_rate)
@@ -78,7 +91,8 @@ impl<'a, const ROWS: usize> Limiter<'a, ROWS> {
     /// The limits of given tables on a rig, stepped `frame_rate` times a second.
     ///
     /// Refused with the table's name and the row: other numbers of entries, ranges without the rest position in them, rates so low that a
-    /// frame's step, `velocity dt` or `acceleration dt^2`, is below 1e-6, times that are negative.
+    /// frame's step, `velocity dt`, `acceleration dt^2` or `jerk dt^3`, is below 1e-6, jerks so low that a stop takes more than ten thousand frames,
+    /// times that are negative.
     pub fn new(rig: Rig<'a>, table: LimitTable<'a>, meta: LimitsMeta, frame_rate: f32) -> Result<Self, LoadError> {
         let rows = rig.rows();
         if rows > ROWS {
@@ -119,6 +133,7 @@ impl<'a, const ROWS: usize> Limiter<'a, ROWS> {
             ("limit/upper", table.upper.len()),
             ("limit/velocity", table.velocity.len()),
             ("limit/acceleration", table.acceleration.len()),
+            ("limit/jerk", if table.jerk.is_empty() { rows } else { table.jerk.len() }),
             ("limit/rest", table.rest.len()),
         ];
         if let Some((tensor, found)) = counts.into_iter().find(|(_, count)| *count != rows) {
@@ -130,17 +145,21 @@ impl<'a, const ROWS: usize> Limiter<'a, ROWS> {
         for (index, limit) in self.limits().enumerate() {
             let refuse = |tensor| Err(LoadError::Value { tensor, index: index / 3 });
             let used = used.next_if_eq(&index).is_some();
-            let Some(Limit { bounds: Bounds { lower, upper, speed, change }, rest }) = limit else {
+            let Some(Limit { bounds, rest }) = limit else {
                 if used {
                     return refuse("limit/velocity");
                 }
                 continue;
             };
+            let Bounds { lower, upper, speed, change, jerk } = bounds;
             if !used || !STEPS.contains(&speed) {
                 return refuse("limit/velocity");
             }
             if !STEPS.contains(&change) {
                 return refuse("limit/acceleration");
+            }
+            if jerk != 0.0 && !(STEPS.contains(&jerk) && bounds.stop_frames() < LONGEST_STOP) {
+                return refuse("limit/jerk");
             }
             if !(lower.abs() <= FARTHEST && lower <= upper) {
                 return refuse("limit/lower");
@@ -160,10 +179,10 @@ impl<'a, const ROWS: usize> Limiter<'a, ROWS> {
         let (table, time) = (self.table, self.frame_time);
         let flat = |rows: &'a [[f32; 3]]| rows.as_flattened().iter();
         let ranges = flat(table.lower).zip(flat(table.upper)).zip(flat(table.rest));
-        let rates = flat(table.velocity).zip(flat(table.acceleration));
-        ranges.zip(rates).map(move |(((lower, upper), rest), (velocity, acceleration))| {
-            let (speed, change) = (velocity * time, acceleration * (time * time));
-            let limit = Limit { bounds: Bounds { lower: *lower, upper: *upper, speed, change }, rest: *rest };
+        let rates = flat(table.velocity).zip(flat(table.acceleration)).zip(flat(table.jerk).chain(repeat(&0.0)));
+        ranges.zip(rates).map(move |(((lower, upper), rest), ((velocity, acceleration), jerk))| {
+            let (speed, change, jerk) = (velocity * time, acceleration * (time * time), jerk * (time * time * time));
+            let limit = Limit { bounds: Bounds { lower: *lower, upper: *upper, speed, change, jerk }, rest: *rest };
             (*velocity > 0.0).then_some(limit)
         })
     }
@@ -187,11 +206,19 @@ impl<'a, const ROWS: usize> Limiter<'a, ROWS> {
     /// the whole range to go. The time that a recovery takes at most.
     pub fn recovery_frames(&self) -> u32 {
         let mut most = 0.0f32;
-        for Limit { bounds: Bounds { lower, upper, speed, change }, .. } in self.limits().flatten() {
+        for Limit { bounds, .. } in self.limits().flatten() {
+            let Bounds { lower, upper, speed, change, jerk } = bounds;
             let range = upper - lower;
             let speed = speed.min(reach(range, CATCH_UP * change));
+            let smooth = if jerk > 0.0 {
+                // The greatest change that is reached on the way to the speed, and how long its jerks take.
+                let change = change.min(sqrt(speed * jerk));
+                5.0 * speed / change + 10.0 * change / jerk + 10.0
+            } else {
+                0.0
+            };
             if speed > 0.0 {
-                most = most.max(range / speed + 5.0 * speed / change + 5.0);
+                most = most.max(range / speed + 5.0 * speed / change + 5.0 + smooth);
             }
         }
         most as u32

@@ -1,6 +1,7 @@
 //! What a limiter remembers and reports.
 
 use super::axis::Coordinate;
+use super::smooth::Smooth;
 use crate::pose::Heading;
 
 /// Why a coordinate did not go where it was told.
@@ -39,6 +40,7 @@ pub struct LimitReport {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LimitState<const ROWS: usize> {
     pub(super) axes: [[Coordinate; 3]; ROWS],
+    pub(super) smooth: [[Smooth; 3]; ROWS],
     pub(super) clamped: [[Clamped; 3]; ROWS],
     /// Last step of the root over the ground, and what it was short of then, world, m.
     pub(super) root_step: [f32; 2],
@@ -59,6 +61,7 @@ impl<const ROWS: usize> LimitState<ROWS> {
     pub const fn new() -> Self {
         Self {
             axes: [[REST; 3]; ROWS],
+            smooth: [[Smooth::REST; 3]; ROWS],
             clamped: [[FREE; 3]; ROWS],
             root_step: [0.0; 2],
             root_error: [0.0; 2],

@@ -38,8 +38,8 @@ A map names robot joints from the trunk outwards; skeleton joints by their own o
   [joints]
   l_shoulder = [\"l_shoulder_pitch\", \"l_shoulder_roll\", \"l_shoulder_yaw\"]
   l_elbow = \"l_elbow\"
-  l_wrist = { urdf = [\"l_wrist\"], lower = -0.5, upper = 0.5, velocity = 4.0, acceleration = 60.0 }
-More keys: forward, up (axes of the root link, x and z); zero = \"rest\"; unmapped = \"fixed\"; root_velocity, root_acceleration,
+  l_wrist = { urdf = [\"l_wrist\"], lower = -0.5, upper = 0.5, velocity = 4.0, acceleration = 60.0, jerk = 2000.0 }
+More keys: jerk (rad/s^3; without it, no limit), forward, up (axes of the root link, x and z); zero = \"rest\"; unmapped = \"fixed\"; root_velocity, root_acceleration,
 heading_velocity, heading_acceleration, height, hold, decay; of a joint: kind (hinge, chain, ball, free), rest, bone. The page
 'Put it on a robot' explains them.")]
 pub struct Args {
@@ -61,6 +61,9 @@ pub struct Args {
     /// Acceleration of joints for which the map has none of their own, rad/s^2
     #[arg(long, value_name = "RAD/S2", value_parser = rate, allow_negative_numbers = true)]
     acceleration: Option<f64>,
+    /// Jerk of joints for which the map has none of their own, rad/s^3; without one jerk is not limited
+    #[arg(long, value_name = "RAD/S3", value_parser = jerk, allow_negative_numbers = true)]
+    jerk: Option<f64>,
     /// Speed of joints for which neither URDF nor map has one, rad/s
     #[arg(long, value_name = "RAD/S", value_parser = rate, allow_negative_numbers = true)]
     velocity: Option<f64>,
@@ -80,6 +83,13 @@ pub fn rate(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(rate) if (1e-3..1e5).contains(&rate) => Ok(rate),
         _ => Err("expected a number above 0".to_owned()),
+    }
+}
+
+fn jerk(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(jerk) if jerk == 0.0 || (1e-3..1e9).contains(&jerk) => Ok(jerk),
+        _ => Err("expected a number above 0, or 0 for no limit".to_owned()),
     }
 }
 
@@ -163,7 +173,7 @@ fn make(args: &Args) -> miette::Result<()> {
     let robot = Robot::parse(&read(&args.file)?).map_err(within(&args.file))?;
     let known = RobotMap::parse(&read(map)?).map_err(within(map))?;
     let base = skeleton_of(args, skeleton)?;
-    let rates = Rates { velocity: args.velocity, acceleration: args.acceleration };
+    let rates = Rates { velocity: args.velocity, acceleration: args.acceleration, jerk: args.jerk };
     let place = |error: RobotError| {
         let path = if error.place.starts_with("joint") { &args.file } else { map };
         error.in_file(path)
@@ -269,16 +279,17 @@ fn finish(
 fn print(summary: &Summary) {
     let table = &summary.table;
     println!(
-        "{:<16} {:<6} {:>8} {:>8} {:>8} {:>8} {:>8}",
-        "joint", "kind", "lower", "upper", "rest", "rad/s", "rad/s^2"
+        "{:<16} {:<6} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}",
+        "joint", "kind", "lower", "upper", "rest", "rad/s", "rad/s^2", "rad/s^3"
     );
     for joint in &table.joints {
         for (at, (velocity, acceleration)) in joint.velocity.iter().zip(&joint.acceleration).enumerate() {
             let (name, kind) = if at == 0 { (joint.joint.as_str(), joint.kind) } else { ("", "") };
             let cell = |list: &[f64]| list.get(at).map_or("-".to_owned(), |x| format!("{x:.3}"));
+            let jerk = joint.jerk.get(at).filter(|jerk| **jerk > 0.0).map_or("-".to_owned(), |x| format!("{x:.0}"));
             let urdf = joint.urdf.get(at).map_or("", |name| name);
             let line = format!(
-                "{name:<16} {kind:<6} {:>8} {:>8} {:>8} {velocity:>8.2} {acceleration:>8.1}  {urdf}",
+                "{name:<16} {kind:<6} {:>8} {:>8} {:>8} {velocity:>8.2} {acceleration:>8.1} {jerk:>8}  {urdf}",
                 cell(&joint.lower),
                 cell(&joint.upper),
                 cell(&joint.rest)

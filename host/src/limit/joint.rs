@@ -20,6 +20,8 @@ pub struct JointLimit {
     pub velocity: [f32; 3],
     /// Largest accelerations, rad/s^2 or m/s^2.
     pub acceleration: [f32; 3],
+    /// Largest jerks, rad/s^3 or m/s^3; 0 for no limit.
+    pub jerk: [f32; 3],
     /// Coordinates at rest, rad or m.
     pub rest: [f32; 3],
 }
@@ -33,6 +35,7 @@ impl JointLimit {
             upper: [FREE; 3],
             velocity: [velocity; 3],
             acceleration: [acceleration; 3],
+            jerk: [0.0; 3],
             rest: [0.0; 3],
         }
     }
@@ -73,9 +76,16 @@ impl JointLimit {
             upper: own(upper),
             velocity: own(self.velocity),
             acceleration: own(self.acceleration),
+            jerk: own(self.jerk),
             rest: own(std::array::from_fn(|axis| 0.0f32.max(lower[axis]).min(upper[axis]))),
             ..self
         }
+    }
+
+    /// The same joint with this jerk limit of every coordinate, rad/s^3 or m/s^3; 0 for none.
+    pub fn with_jerk(self, jerk: f32) -> Self {
+        let count = self.count();
+        Self { jerk: std::array::from_fn(|axis| if axis < count { jerk } else { 0.0 }), ..self }
     }
 
     /// True for a ball whose bounds no rotation reaches.
@@ -101,6 +111,8 @@ pub struct HeightLimit {
     pub velocity: f32,
     /// Largest acceleration.
     pub acceleration: f32,
+    /// Largest jerk, m/s^3; 0 for no limit.
+    pub jerk: f32,
     /// Height at rest.
     pub rest: f32,
 }

@@ -70,6 +70,7 @@ impl LimitsModel {
             upper: 2.0 * height,
             velocity: meta.root_velocity,
             acceleration: meta.root_acceleration,
+            jerk: 0.0,
             rest: height,
         }
     }
@@ -166,9 +167,15 @@ mod tests {
         model.joints[4] = JointLimit::chain([X, Y, Z], [-1.0, -0.5, 0.1], [0.5, 0.6, 0.7], 4.0, 40.0);
         model.joints[5] = JointLimit::ball([-0.5; 3], [0.5; 3], 6.0, 60.0);
         model.joints[6] = JointLimit::fixed();
+        // Nothing has a jerk limit: no tensor.
+        assert!(model.tables(&rig).unwrap().view().jerk.is_empty());
+        model.joints[2].jerk[0] = 2000.0;
+        model.joints[9] = model.joints[9].with_jerk(1500.0);
+        model.height.jerk = 300.0;
         let tables = model.tables(&rig).unwrap();
         // Row 0 is the root's; joints 0 and 1 are balls.
         assert_eq!(tables.view().upper[3], [2.4, 0.3, 0.0]);
+        assert_eq!((tables.view().jerk[0], tables.view().jerk[3]), ([0.0, 300.0, 0.0], [2000.0, 0.0, 0.0]));
         assert_eq!(tables.view().lower[4], [-1.0, -0.5, 0.1]);
         assert_eq!(tables.view().rest[4], [0.0, 0.0, 0.1]);
         let file = PackFile::from_bytes(&model.pack(&rig, &Provenance::default()).unwrap());

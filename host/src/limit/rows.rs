@@ -17,6 +17,8 @@ pub struct Tables {
     upper: Vec<[f32; 3]>,
     velocity: Vec<[f32; 3]>,
     acceleration: Vec<[f32; 3]>,
+    /// Empty where nothing has a jerk limit.
+    jerk: Vec<[f32; 3]>,
     rest: Vec<[f32; 3]>,
 }
 
@@ -36,7 +38,12 @@ impl Tables {
             }
             column
         };
+        let mut jerk = column(|height| height.jerk, |joint| joint.jerk);
+        if jerk.as_flattened().iter().all(|jerk| *jerk == 0.0) {
+            jerk.clear();
+        }
         let tables = Self {
+            jerk,
             lower: column(|height| height.lower, |joint| joint.lower),
             upper: column(|height| height.upper, |joint| joint.upper),
             velocity: column(|height| height.velocity, |joint| joint.velocity),
@@ -67,6 +74,7 @@ impl Tables {
             upper: &self.upper,
             velocity: &self.velocity,
             acceleration: &self.acceleration,
+            jerk: &self.jerk,
             rest: &self.rest,
         }
     }
@@ -81,6 +89,9 @@ impl Tables {
         ] {
             pack.f32s(name, 3, values.as_flattened());
         }
+        if !self.jerk.is_empty() {
+            pack.f32s("limit/jerk", 3, self.jerk.as_flattened());
+        }
     }
 }
 
@@ -88,19 +99,20 @@ impl Tables {
 pub(super) fn joints(table: &LimitTable, rig: &Rig) -> (Option<HeightLimit>, Vec<JointLimit>) {
     let device = rig.frames();
     let height = || {
-        let of = |column: &[[f32; 3]]| column.as_flattened()[1];
+        let of = |column: &[[f32; 3]]| column.as_flattened().get(1).copied().unwrap_or(0.0);
         HeightLimit {
             lower: of(table.lower),
             upper: of(table.upper),
             velocity: of(table.velocity),
             acceleration: of(table.acceleration),
+            jerk: of(table.jerk),
             rest: of(table.rest),
         }
     };
     let joint = |(coordinates, (kind, first)): (JointCoordinates, (kinesic::rig::JointKind, usize))| {
         let own = |column: &[[f32; 3]]| {
             let mut own = [0.0; 3];
-            let used = &column.as_flattened()[first..first + kind.coordinates()];
+            let used = column.as_flattened().get(first..first + kind.coordinates()).unwrap_or(&[]);
             own[..used.len()].copy_from_slice(used);
             own
         };
@@ -110,6 +122,7 @@ pub(super) fn joints(table: &LimitTable, rig: &Rig) -> (Option<HeightLimit>, Vec
             upper: own(table.upper),
             velocity: own(table.velocity),
             acceleration: own(table.acceleration),
+            jerk: own(table.jerk),
             rest: own(table.rest),
         }
     };

@@ -40,9 +40,11 @@ pub struct Height {
     pub rest: f64,
     pub velocity: f64,
     pub acceleration: f64,
+    #[serde(skip_serializing_if = "is_none")]
+    pub jerk: f64,
 }
 
-/// One joint; lists have one entry per coordinate. A free joint has one speed and one acceleration, for all three, and no bounds.
+/// One joint; lists have one entry per coordinate. A free joint has one speed, one acceleration and one jerk, for all three, and no bounds.
 #[derive(Clone, Debug, Serialize)]
 pub struct Entry {
     /// Name in the skeleton.
@@ -66,6 +68,9 @@ pub struct Entry {
     pub velocity: Vec<f64>,
     /// Largest accelerations, rad/s^2 or m/s^2.
     pub acceleration: Vec<f64>,
+    /// Largest jerks, rad/s^3 or m/s^3, 0 for no limit; left out where the joint has none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub jerk: Vec<f64>,
 }
 
 impl Table {
@@ -91,7 +96,7 @@ impl Table {
     pub fn csv(&self) -> String {
         let mut text =
             "joint,kind,coordinate,urdf,axis_x,axis_y,axis_z,reference_i,reference_j,reference_k,reference_w,lower,upper,rest,\
-                        velocity,acceleration\n"
+                        velocity,acceleration,jerk\n"
                 .to_owned();
         for joint in &self.joints {
             for (at, velocity) in joint.velocity.iter().enumerate() {
@@ -110,6 +115,7 @@ impl Table {
                     cell(&joint.rest),
                     velocity.to_string(),
                     cell(&joint.acceleration),
+                    cell(&joint.jerk),
                 ]
                 .join(",");
                 text.push('\n');
@@ -117,6 +123,10 @@ impl Table {
         }
         text
     }
+}
+
+fn is_none(jerk: &f64) -> bool {
+    *jerk == 0.0
 }
 
 /// The double that prints as the single does.
@@ -131,6 +141,7 @@ fn height(limit: &HeightLimit) -> Height {
         rest: plain(limit.rest),
         velocity: plain(limit.velocity),
         acceleration: plain(limit.acceleration),
+        jerk: plain(limit.jerk),
     }
 }
 
@@ -150,5 +161,6 @@ fn entry(limit: &JointLimit, name: &str, urdf: Option<Vec<String>>) -> Entry {
         rest: list(&limit.rest, bounds),
         velocity: list(&limit.velocity, rates),
         acceleration: list(&limit.acceleration, rates),
+        jerk: if limit.jerk == [0.0; 3] { Vec::new() } else { list(&limit.jerk, rates) },
     }
 }

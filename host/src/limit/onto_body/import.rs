@@ -27,6 +27,8 @@ pub struct Rates {
     pub velocity: Option<f64>,
     /// rad/s^2.
     pub acceleration: Option<f64>,
+    /// rad/s^3; none or 0 for no limit.
+    pub jerk: Option<f64>,
 }
 
 /// Limits, and how they came about.
@@ -58,6 +60,8 @@ pub fn import(
     note_leaders(robot, &mut notes);
     let acceleration = rates.acceleration.or(map.acceleration);
     let velocity = rates.velocity.or(map.velocity);
+    let jerk = rates.jerk.or(map.jerk).unwrap_or(0.0);
+    let defaults = Rates { velocity, acceleration, jerk: Some(jerk) };
     let mut limits = Vec::new();
     for (joint, entry) in entries.iter().enumerate() {
         let bone = &rig.skeleton.joints[joint];
@@ -68,7 +72,7 @@ pub fn import(
                 let axis =
                     |at: &usize| turned[joint].inverse() * (to_world * (frames[*at].rotation * robot.joints[*at].axis));
                 let axes: Vec<Vector3<f64>> = joints[joint].iter().map(axis).collect();
-                let rows = rows(robot, &joints[joint], entry, velocity, acceleration, &mut notes)?;
+                let rows = rows(robot, &joints[joint], entry, defaults, &mut notes)?;
                 let mut limit = limit(entry, &axes, &rows, robot, &mut joints[joint], &mut notes)?;
                 limit.coordinates.reference = reference;
                 Some(limit)
@@ -106,7 +110,9 @@ pub fn import(
                 // About the skeleton's own middle, unless the map says where the bone is at rest.
                 let own =
                     if entry.is_some_and(|entry| entry.bone.is_some()) { reference } else { own[joint].reference };
+                let smooth = entry.and_then(|entry| entry.jerk.as_ref()).map_or(jerk, |own| own[0]);
                 JointLimit { coordinates: JointCoordinates { reference: own, ..free.coordinates }, ..free }
+                    .with_jerk(smooth as f32)
             }
         });
     }
@@ -222,6 +228,7 @@ struct Row {
     upper: f64,
     velocity: f64,
     acceleration: f64,
+    jerk: f64,
     rest: Option<f64>,
 }
 
@@ -271,8 +278,7 @@ fn rows(
     robot: &Robot,
     joints: &[usize],
     entry: &Entry,
-    velocity: Option<f64>,
-    acceleration: Option<f64>,
+    defaults: Rates,
     notes: &mut Vec<String>,
 ) -> Result<Vec<Row>, RobotError> {
     let mut rows = Vec::new();
@@ -281,8 +287,10 @@ fn rows(
         let place = format!("joint '{}' (line {})", joint.name, joint.line);
         let own = |list: &Option<Vec<f64>>| list.as_ref().map(|list| list[index]);
         let (mut lower, mut upper) = bounds(joint, own(&entry.lower), own(&entry.upper), &place, notes)?;
-        let mut speed =
-            own(&entry.velocity).or(joint.velocity.filter(|speed| *speed > 0.0)).or(velocity).ok_or_else(|| {
+        let mut speed = own(&entry.velocity)
+            .or(joint.velocity.filter(|speed| *speed > 0.0))
+            .or(defaults.velocity)
+            .ok_or_else(|| {
                 let found = joint.velocity.map_or("no velocity".to_owned(), |speed| format!("velocity=\"{speed}\""));
                 let help = format!("write velocity = 6.0 into the map's entry '{}', or give --velocity 6", entry.joint);
                 RobotError::new(&place, format!("found {found}, expected rad/s above 0"), help)
@@ -307,7 +315,8 @@ fn rows(
             lower,
             upper,
             velocity: speed,
-            acceleration: own(&entry.acceleration).or(acceleration).ok_or_else(|| no_acceleration(&place))?,
+            acceleration: own(&entry.acceleration).or(defaults.acceleration).ok_or_else(|| no_acceleration(&place))?,
+            jerk: own(&entry.jerk).or(defaults.jerk).unwrap_or(0.0),
             rest: own(&entry.rest),
         });
     }
@@ -433,6 +442,7 @@ fn limit(
         coordinates,
         velocity: three(&|row| row.velocity as f32),
         acceleration: three(&|row| row.acceleration as f32),
+        jerk: three(&|row| row.jerk as f32),
         ..JointLimit::free(1.0, 1.0)
     };
     let (lower, mut upper) = (three(&|row| row.lower as f32), three(&|row| row.upper as f32));
@@ -462,7 +472,7 @@ fn along(axes: &[Vector3<f64>]) -> Option<[(usize, f64); 3]> {
 
 /// The device's refusal, with the joint's name.
 fn refused(error: &LoadError, model: &LimitsModel, rig: &Rig) -> RobotError {
-    let help = "the range must hold the rest angle; velocity / rate and acceleration / rate^2 must be above 1e-6";
+    let help = "the range must hold the rest angle; velocity / rate, acceleration / rate^2 and jerk / rate^3 must be above 1e-6";
     let of_joint = |name: &str, column: &str| {
         RobotError::new(format!("joint '{name}'"), format!("its {column} is not what a limiter takes"), help)
     };

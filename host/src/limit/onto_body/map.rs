@@ -51,6 +51,8 @@ pub struct Entry {
     pub velocity: Option<Vec<f64>>,
     /// Accelerations, rad/s^2.
     pub acceleration: Option<Vec<f64>>,
+    /// Jerks, rad/s^3; 0 for no limit.
+    pub jerk: Option<Vec<f64>>,
     /// Angles at rest, rad.
     pub rest: Option<Vec<f64>>,
     /// Direction of the bone in the root link's frame, all angles zero.
@@ -62,6 +64,8 @@ pub struct Entry {
 pub struct RobotMap {
     /// Acceleration of joints for which the map has none of their own, rad/s^2.
     pub acceleration: Option<f64>,
+    /// Jerk of joints for which the map has none of their own, rad/s^3; none or 0 for no limit.
+    pub jerk: Option<f64>,
     /// Speed of joints for which neither the URDF nor the map has one, rad/s.
     pub velocity: Option<f64>,
     /// Where the robot faces, and where up is, in its root link's frame.
@@ -80,8 +84,9 @@ pub struct RobotMap {
     pub entries: Vec<Entry>,
 }
 
-const KEYS: [&str; 14] = [
+const KEYS: [&str; 15] = [
     "acceleration",
+    "jerk",
     "velocity",
     "forward",
     "up",
@@ -96,7 +101,7 @@ const KEYS: [&str; 14] = [
     "decay",
     "joints",
 ];
-const ENTRY: [&str; 8] = ["urdf", "kind", "lower", "upper", "velocity", "acceleration", "rest", "bone"];
+const ENTRY: [&str; 9] = ["urdf", "kind", "lower", "upper", "velocity", "acceleration", "jerk", "rest", "bone"];
 const SAMPLE: &str =
     "as in  l_shoulder = [\"l_shoulder_pitch\", \"l_shoulder_roll\", \"l_shoulder_yaw\"]  below [joints]";
 
@@ -153,6 +158,7 @@ impl RobotMap {
         }
         Ok(Self {
             acceleration: positive("acceleration")?,
+            jerk: positive("jerk")?,
             velocity: positive("velocity")?,
             forward,
             up,
@@ -251,6 +257,7 @@ fn entry(joint: &str, value: &Value) -> Result<Entry, RobotError> {
     entry.upper = list("upper")?;
     entry.velocity = list("velocity")?;
     entry.acceleration = list("acceleration")?;
+    entry.jerk = list("jerk")?;
     entry.rest = list("rest")?;
     if let Some(value) = table.get("bone") {
         let bone = numbers(value).and_then(|all| Vector3::from(<[f64; 3]>::try_from(all).ok()?).try_normalize(1e-6));
