@@ -14,6 +14,7 @@
 //! | [`components`] | style components applied to a live pose or to a stored stream of weights | Phong 2018 |
 //! | [`emotion`] | strength of an emotion -> keyframes -> spline -> pose | Chan 2019 |
 //! | [`face`] | strength of a facial expression -> landmarks | Chan 2019 |
+//! | [`play`] | moves in layers: what a robot's engines are given, without a jump | Bollo 2018 |
 //! | [`limit`] | the last stage: position, velocity, acceleration and jerk limits | |
 //! | [`servo`] | a coordinate as the number that a servo takes | |
 //! | [`kernel`] | the few inner loops: matrix x vector, modal recursion, activations | |
@@ -60,6 +61,7 @@ pub mod kernel;
 pub mod limit;
 pub mod mechanics;
 pub mod model;
+pub mod play;
 pub mod pose;
 pub mod rig;
 pub mod servo;
@@ -72,6 +74,7 @@ pub use face::{FaceState, FaceSynth};
 pub use limit::{LimitState, LimitTable, Limiter};
 pub use mechanics::{BodyMechanics, MechanicsState};
 pub use model::{LoadError, Pack};
+pub use play::Player;
 pub use pose::{Pose, Skeleton};
 pub use rig::{Frame, Rig};
 pub use servo::Servos;

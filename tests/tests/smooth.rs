@@ -1,124 +1,13 @@
 //! Jerk limits: position, velocity, acceleration and jerk within their bounds after any input, checked in double precision.
 
-use kinesic::limit::{LimitState, LimitTable, Limiter};
-use kinesic::model::LimitsMeta;
-use kinesic::rig::JointKind;
-use kinesic::{LoadError, Pipeline, PipelineState, Rig};
+#[path = "common/servos_limits.rs"]
+mod limits;
 
-const ROWS: usize = 2;
-const SERVOS: usize = 6;
-
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f32 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 40) as f32 / (1u64 << 24) as f32
-    }
-
-    fn within(&mut self, low: f32, high: f32) -> f32 {
-        low + self.unit() * (high - low)
-    }
-
-    fn log(&mut self, low: f32, high: f32) -> f32 {
-        self.within(low.ln(), high.ln()).exp()
-    }
-}
-
-/// Limits of six servos.
-#[derive(Clone, Debug)]
-struct Servos {
-    lower: [[f32; 3]; ROWS],
-    upper: [[f32; 3]; ROWS],
-    velocity: [[f32; 3]; ROWS],
-    acceleration: [[f32; 3]; ROWS],
-    jerk: [[f32; 3]; ROWS],
-    rest: [[f32; 3]; ROWS],
-    rate: f32,
-}
-
-impl Servos {
-    /// Such as servos have: 0.5 to 12 rad/s, full speed in 30 ms to 1 s, full acceleration in 10 ms to 0.3 s. Some have no jerk limit.
-    fn random(random: &mut Random, all: bool) -> Self {
-        let zero = [[0.0; 3]; ROWS];
-        let rate = [30.0, 50.0, 60.0, 100.0, 200.0][(random.unit() * 5.0) as usize % 5];
-        let mut servos =
-            Self { lower: zero, upper: zero, velocity: zero, acceleration: zero, jerk: zero, rest: zero, rate };
-        for at in 0..SERVOS {
-            let (row, own) = (at / 3, at % 3);
-            let velocity = random.log(0.5, 12.0);
-            let acceleration = velocity / random.log(0.03, 1.0);
-            let jerk = acceleration / random.log(0.01, 0.3);
-            let lower = -random.log(0.05, 3.0);
-            (servos.lower[row][own], servos.upper[row][own]) = (lower, random.log(0.05, 3.0));
-            (servos.velocity[row][own], servos.acceleration[row][own]) = (velocity, acceleration);
-            servos.jerk[row][own] = if all || at != 4 { jerk } else { 0.0 };
-        }
-        servos
-    }
-
-    fn table(&self) -> LimitTable<'_> {
-        LimitTable {
-            lower: &self.lower,
-            upper: &self.upper,
-            velocity: &self.velocity,
-            acceleration: &self.acceleration,
-            jerk: &self.jerk,
-            rest: &self.rest,
-        }
-    }
-
-    fn limiter<'a>(&self, table: LimitTable<'a>) -> Result<Limiter<'a, ROWS>, LoadError> {
-        Limiter::new(rig(), table, LimitsMeta::default(), self.rate)
-    }
-
-    /// Bounds of a coordinate per frame.
-    fn rates(&self, at: usize) -> [f64; 3] {
-        let (row, own, time) = (at / 3, at % 3, 1.0 / f64::from(self.rate));
-        let of = |table: &[[f32; 3]; ROWS], time: f64| f64::from(table[row][own]) * time;
-        let jerk = of(&self.jerk, time * time * time);
-        [of(&self.velocity, time), of(&self.acceleration, time * time), if jerk > 0.0 { jerk } else { f64::INFINITY }]
-    }
-}
-
-static KINDS: [u16; SERVOS] = [JointKind::Hinge as u16; SERVOS];
-static AXES: [[[f32; 3]; 3]; SERVOS] = [[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]; SERVOS];
-static REFERENCE: [[f32; 4]; SERVOS] = [[0.0, 0.0, 0.0, 1.0]; SERVOS];
-static MIDDLE: [[f32; 3]; SERVOS] = [[0.0; 3]; SERVOS];
-
-fn rig() -> Rig<'static> {
-    Rig::new(&KINDS, &AXES, &REFERENCE, &MIDDLE, None).unwrap()
-}
+use kinesic::limit::{LimitState, LimitTable};
+use kinesic::{LoadError, Pipeline, PipelineState};
+use limits::{ROWS, Random, SERVOS, Servos, Watch, rig};
 
 type State = PipelineState<LimitState<ROWS>, ROWS>;
-
-/// The last coordinates, steps and changes of steps, and the largest rates as shares of their bounds, less the rounding of a coordinate.
-struct Watch {
-    last: [[f64; 3]; SERVOS],
-    most: [f64; 3],
-}
-
-impl Watch {
-    fn new() -> Self {
-        Self { last: [[0.0; 3]; SERVOS], most: [0.0; 3] }
-    }
-
-    fn check(&mut self, servos: &Servos, out: &[f32; SERVOS]) {
-        for (at, (x, last)) in out.iter().zip(&mut self.last).enumerate() {
-            let (lower, upper) = (servos.lower[at / 3][at % 3], servos.upper[at / 3][at % 3]);
-            assert!((lower..=upper).contains(x), "coordinate {at} at {x}, not in {lower}..={upper}");
-            let x = f64::from(*x);
-            let (step, change) = (x - last[0], x - last[0] - last[1]);
-            // Half a unit in the last place of each coordinate that a difference is made of.
-            let ulp = f64::from(upper.max(-lower).max(0.5)) * f64::from(f32::EPSILON);
-            let found = [(step, 1.0), (change, 2.0), (change - last[2], 4.0)];
-            for ((most, (rate, ulps)), bound) in self.most.iter_mut().zip(found).zip(servos.rates(at)) {
-                *most = most.max((rate.abs() - ulps * ulp) / bound);
-            }
-            *last = [x, step, change];
-        }
-    }
-}
 
 fn wild(random: &mut Random) -> f32 {
     match (random.unit() * 6.0) as u32 {

@@ -86,7 +86,8 @@ pub fn rate(text: &str) -> Result<f64, String> {
     }
 }
 
-fn jerk(text: &str) -> Result<f64, String> {
+/// A jerk from the command line.
+pub fn jerk(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(jerk) if jerk == 0.0 || (1e-3..1e9).contains(&jerk) => Ok(jerk),
         _ => Err("expected a number above 0, or 0 for no limit".to_owned()),

@@ -62,6 +62,8 @@ pub struct Defaults {
     pub velocity: Option<f64>,
     /// rad/s^2.
     pub acceleration: Option<f64>,
+    /// rad/s^3; none for no limit.
+    pub jerk: Option<f64>,
 }
 
 /// One joint on its way into a machine.
@@ -351,7 +353,7 @@ fn virtual_joints(parts: &mut Vec<Part>, pose: &PoseEntry) {
         let parent = if coordinate == 0 { 0 } else { parts.len() - 1 };
         let axis = axes[coordinate % 3];
         let mut servo = ServoEntry::named(&pose.name);
-        (servo.speed, servo.acceleration) = (pose.speed, pose.acceleration);
+        (servo.speed, servo.acceleration, servo.jerk) = (pose.speed, pose.acceleration, pose.jerk);
         parts.push(Part {
             joint: Joint {
                 name: format!("{}_{}", pose.name, POSE[coordinate]),
@@ -434,7 +436,8 @@ fn limit(part: &Part, defaults: Defaults, notes: &mut Vec<String>) -> Result<Joi
     });
     let rest = own(servo.rest).unwrap_or(0.0).clamp(lower, upper);
     let axis = part.axis.map(|x| x as f32).into();
-    let mut limit = JointLimit::hinge(axis, [lower as f32, upper as f32], speed as f32, acceleration as f32);
+    let mut limit = JointLimit::hinge(axis, [lower as f32, upper as f32], speed as f32, acceleration as f32)
+        .with_jerk(per_second(servo.jerk).or(defaults.jerk).unwrap_or(0.0) as f32);
     limit.coordinates.kind = part.kind;
     limit.rest[0] = (rest as f32).clamp(limit.lower[0], limit.upper[0]);
     Ok(coordinates(limit))

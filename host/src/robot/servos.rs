@@ -31,6 +31,8 @@ pub struct ServoEntry {
     pub speed: Option<f64>,
     /// Largest acceleration, per second squared.
     pub acceleration: Option<f64>,
+    /// Largest jerk, per second cubed; none for no limit.
+    pub jerk: Option<f64>,
     /// Value at rest.
     pub rest: Option<f64>,
     /// The joint that carries it; the base unless given. Only for a robot without a description.
@@ -54,6 +56,8 @@ pub struct PoseEntry {
     pub speed: Option<f64>,
     /// Largest accelerations, m/s^2 and rad/s^2.
     pub acceleration: Option<f64>,
+    /// Largest jerks, m/s^3 and rad/s^3; none for no limit.
+    pub jerk: Option<f64>,
 }
 
 /// The names of a pose's coordinates, in order. The rotation is `Rz(yaw) Ry(pitch) Rx(roll)`.
@@ -71,7 +75,7 @@ pub struct ServoTable {
 }
 
 const KEYS: [&str; 3] = ["name", "servo", "pose"];
-const SERVO: [&str; 14] = [
+const SERVO: [&str; 15] = [
     "name",
     "id",
     "unit",
@@ -82,12 +86,13 @@ const SERVO: [&str; 14] = [
     "max",
     "speed",
     "acceleration",
+    "jerk",
     "rest",
     "parent",
     "offset",
     "axis",
 ];
-const POSE_KEYS: [&str; 5] = ["name", "min", "max", "speed", "acceleration"];
+const POSE_KEYS: [&str; 6] = ["name", "min", "max", "speed", "acceleration", "jerk"];
 const SAMPLE: &str = "as in  [[servo]]  name = \"pan\"  id = 1  unit = \"deg\"  min = -90  max = 90";
 
 impl ServoTable {
@@ -269,6 +274,7 @@ fn servo(place: &str, table: &Table) -> Result<ServoEntry, RobotError> {
         max,
         speed: keys.positive("speed")?,
         acceleration: keys.positive("acceleration")?,
+        jerk: keys.positive("jerk")?,
         rest: keys.number("rest")?,
         parent: keys.text("parent")?,
         offset: keys.numbers::<3>("offset")?.map(Vector3::from),
@@ -286,7 +292,14 @@ fn pose(place: &str, table: &Table) -> Result<PoseEntry, RobotError> {
     if let Some(at) = (0..6).find(|at| min[*at] >= max[*at]) {
         return keys.refuse("max", &format!("more than min for {}", POSE[at]));
     }
-    Ok(PoseEntry { name, min, max, speed: keys.positive("speed")?, acceleration: keys.positive("acceleration")? })
+    Ok(PoseEntry {
+        name,
+        min,
+        max,
+        speed: keys.positive("speed")?,
+        acceleration: keys.positive("acceleration")?,
+        jerk: keys.positive("jerk")?,
+    })
 }
 
 impl ServoEntry {
@@ -303,6 +316,7 @@ impl ServoEntry {
             max: None,
             speed: None,
             acceleration: None,
+            jerk: None,
             rest: None,
             parent: None,
             offset: None,

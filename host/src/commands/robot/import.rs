@@ -11,7 +11,7 @@ use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
 
 use super::table::{self, Coordinate};
-use crate::commands::limits::{frame_rate, rate};
+use crate::commands::limits::{frame_rate, jerk, rate};
 use crate::commands::origin::{command_line, fingerprint};
 use crate::commands::output::{check_output, print_json, write_whole};
 
@@ -40,6 +40,7 @@ A table of servos; numbers are in the servo's own unit (rad, deg, m, mm, ticks, 
   max = 3072
   speed = 3000              # per second
   acceleration = 20000      # per second squared
+  jerk = 400000             # per second cubed; without it, no limit
 More keys: rest; without a description: parent, offset (m), axis (Z up). A platform that its own firmware solves is a [[pose]]: name, min, max
 (six numbers each: x, y, z in m, roll, pitch, yaw in rad). The page 'Put it on a robot' explains them.")]
 pub struct Args {
@@ -55,6 +56,9 @@ pub struct Args {
     /// Acceleration of joints for which the table has none, rad/s^2 and m/s^2 (default: full speed in 0.2 s)
     #[arg(long, value_name = "RAD/S2", value_parser = rate, allow_negative_numbers = true)]
     acceleration: Option<f64>,
+    /// Jerk of joints for which the table has none, rad/s^3 and m/s^3 (default: no limit)
+    #[arg(long, value_name = "RAD/S3", value_parser = jerk, allow_negative_numbers = true)]
+    jerk: Option<f64>,
     /// Speed of joints for which neither description nor table has one, rad/s and m/s (default: 6.28 and 0.5)
     #[arg(long, value_name = "RAD/S", value_parser = rate, allow_negative_numbers = true)]
     velocity: Option<f64>,
@@ -84,7 +88,7 @@ struct Summary {
 /// Runs the command.
 pub fn run(args: &Args) -> miette::Result<()> {
     check_output(&args.out, "kin")?;
-    let defaults = Defaults { velocity: args.velocity, acceleration: args.acceleration };
+    let defaults = Defaults { velocity: args.velocity, acceleration: args.acceleration, jerk: args.jerk };
     let is_table = args.file.extension().is_some_and(|found| found.eq_ignore_ascii_case("toml"));
     let mut table = match (is_table, &args.servos) {
         (true, Some(other)) => {

@@ -15,6 +15,8 @@ pub struct Coordinate {
     upper: f64,
     velocity: f64,
     acceleration: f64,
+    /// 0 for no limit.
+    jerk: f64,
     rest: f64,
     /// None for a virtual joint.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -36,6 +38,7 @@ pub fn coordinates(machine: &Machine) -> Vec<Coordinate> {
         upper: joint.upper[0],
         velocity: joint.velocity[0],
         acceleration: joint.acceleration[0],
+        jerk: joint.jerk.first().copied().unwrap_or(0.0),
         rest: joint.rest[0],
         id: servo.id,
         unit: unit_name(servo.unit),
@@ -48,16 +51,17 @@ pub fn coordinates(machine: &Machine) -> Vec<Coordinate> {
 /// Prints them.
 pub fn print(coordinates: &[Coordinate]) {
     println!(
-        "{:<24} {:<6} {:>8} {:>8} {:>8} {:>8} {:>9}   servo",
-        "joint", "kind", "lower", "upper", "rest", "per s", "per s^2"
+        "{:<24} {:<6} {:>8} {:>8} {:>8} {:>8} {:>9} {:>9}   servo",
+        "joint", "kind", "lower", "upper", "rest", "per s", "per s^2", "per s^3"
     );
     for c in coordinates {
         let servo = match c.id {
             Some(id) => format!("{id}: {} = {} {:+} x", c.unit, c.zero, c.scale),
             None => "none".to_owned(),
         };
+        let jerk = if c.jerk > 0.0 { format!("{:.0}", c.jerk) } else { "-".to_owned() };
         let line = format!(
-            "{:<24} {:<6} {:>8.3} {:>8.3} {:>8.3} {:>8.2} {:>9.1}   {servo}",
+            "{:<24} {:<6} {:>8.3} {:>8.3} {:>8.3} {:>8.2} {:>9.1} {jerk:>9}   {servo}",
             c.joint, c.kind, c.lower, c.upper, c.rest, c.velocity, c.acceleration
         );
         println!("{}", plain::line(&line));
