@@ -1,11 +1,13 @@
-//! A pack as Rust source: bytes that are aligned, and the capacities that they need as constants.
+//! A pack as Rust source: bytes that are aligned, and the capacities that they need as constants. A robot's move as an array.
 
 use std::fmt::Write;
 
 use kinesic::model::{LoadError, ModelMeta};
 
+use crate::clip::Clip;
 use crate::engines::{Source, known};
 use crate::pack::PackFile;
+use crate::robot::Machine;
 
 /// Bytes on a line of the source.
 const LINE: usize = 30;
@@ -72,4 +74,35 @@ pub fn rust_module(file: &PackFile, origin: &str) -> Result<String, LoadError> {
     }
     out.push_str("\");\n");
     Ok(out)
+}
+
+/// A module with the constant `FRAME_RATE` and the static `FRAMES`: a machine's motion as `kinesic::play::Move` takes it, one row per frame, rad and
+/// m in the order of the coordinates.
+pub fn rust_move(clip: &Clip, machine: &Machine, origin: &str) -> String {
+    let names: Vec<&str> = machine.servos.iter().map(|servo| servo.name.as_str()).collect();
+    let mut out = String::new();
+    // Writing to a String cannot fail.
+    let _ = writeln!(
+        out,
+        "//! A move of {:?}, made by `kinesic export --rust` from {origin:?}. Made again, not edited.",
+        machine.name
+    );
+    let _ = writeln!(out, "//!\n//! Coordinates, rad and m: {names:?}.");
+    let _ = writeln!(
+        out,
+        "\n/// Frames per second.\n#[allow(dead_code)]\npub const FRAME_RATE: f32 = {:?};",
+        clip.fps() as f32
+    );
+    let _ = writeln!(
+        out,
+        "\n/// One row per frame, for `kinesic::play::Move::new`.\n#[rustfmt::skip]\npub static FRAMES: [[f32; {}]; {}] = [",
+        names.len(),
+        clip.frames()
+    );
+    for row in (0..clip.frames()).filter_map(|frame| clip.coordinates(frame)) {
+        let row: Vec<f32> = row.iter().take(names.len()).map(|x| *x as f32).collect();
+        let _ = writeln!(out, "    {row:?},");
+    }
+    out.push_str("];\n");
+    out
 }

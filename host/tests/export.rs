@@ -276,3 +276,40 @@ fn completions_know_the_commands() {
     let output = Command::new("bash").args(["-c", script]).current_dir(folder.path()).output().unwrap();
     assert_eq!(String::from_utf8_lossy(&output.stdout).trim(), "modulate");
 }
+
+/// The numbers of a Rust array, as the compiler reads them.
+fn numbers(text: &str) -> Vec<f32> {
+    let rows = text.split_once("= [").unwrap().1.split(['[', ']', ',', ';']);
+    rows.map(str::trim).filter(|cell| !cell.is_empty()).map(|cell| cell.parse().unwrap()).collect()
+}
+
+#[test]
+fn a_robot_s_move_becomes_an_array_at_the_robot_s_rate() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = "name = \"head\"\n[[servo]]\nname = \"pan\"\nunit = \"deg\"\nzero = 90\nmin = 0\nmax = 180\n\
+                 [[servo]]\nname = \"tilt\"\nunit = \"ticks\"\nper_turn = 4096\nsign = -1\nmin = -900\nmax = 900\n";
+    std::fs::write(folder.path().join("head.toml"), table).unwrap();
+    let rows: String = (0..11).map(|at| format!("{},{},{}\n", f64::from(at) * 0.04, 90 + at, at * 10)).collect();
+    std::fs::write(folder.path().join("nod.csv"), format!("time,pan,tilt\n{rows}")).unwrap();
+    succeed(&["robot", "import", "head.toml", "--out", "head.kin", "--fps", "50"], folder.path());
+    succeed(&["export", "--rust", "nod.csv", "--robot", "head.kin", "--out", "nod.rs"], folder.path());
+    let text = std::fs::read_to_string(folder.path().join("nod.rs")).unwrap();
+    assert!(text.contains("pub static FRAMES: [[f32; 2]; 21]") && text.contains("FRAME_RATE: f32 = 50.0;"), "{text}");
+    for (frame, row) in numbers(text.split_once("FRAMES").unwrap().1).chunks(2).enumerate() {
+        let time = frame as f32 / 2.0;
+        let expected = [time.to_radians(), -time * 10.0 / 4096.0 * std::f32::consts::TAU];
+        assert!(row.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-6), "{frame}: {row:?} {expected:?}");
+    }
+    // A clip of a body is no move, and nothing is written.
+    succeed(&["demo", "--out", "."], folder.path());
+    let clip = std::fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().path());
+    let clip = clip.into_iter().find(|path| path.extension().is_some_and(|end| end == "bvh")).unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_kinesic"))
+        .args(["export", "--rust", "--out", "none.rs"])
+        .arg(clip)
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    assert!(!output.status.success() && String::from_utf8_lossy(&output.stderr).contains("--robot"));
+    assert!(!folder.path().join("none.rs").exists());
+}

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use kinesic_host::clip;
+use kinesic_host::clip::{self, ReadOptions};
 use kinesic_host::embed;
 use kinesic_host::pack::PackFile;
 use kinesic_host::prepare::Source;
@@ -13,7 +13,7 @@ use super::clips::Reading;
 use super::inspect::is_pack;
 use super::output::{check_motion, check_output, print_json, write_motion, write_whole};
 
-/// Write a clip in another format, or a pack as Rust source
+/// Write a clip in another format, or a pack or a robot's move as Rust source
 ///
 /// A clip keeps its frame rate and its motion, and its skeleton but for what reading leaves out: scene roots above the hips are composed
 /// into them, joints beside them are dropped, with a note. BVH is in centimetres; glTF 2.0 in metres, +Y up, one key a frame, the
@@ -23,12 +23,14 @@ use super::output::{check_motion, check_output, print_json, write_motion, write_
 Examples:
   kinesic export walk.bvh --out walk.glb
   kinesic export walk.bvh --out walk-angles.csv
-  kinesic export --rust angry.kin --out src/pack.rs")]
+  kinesic export --rust angry.kin --out src/pack.rs
+  kinesic export --rust nod.csv --robot desk.kin --out src/nod.rs")]
 pub struct Args {
-    /// A clip (BVH, Kinect CSV), or a pack with --rust
+    /// A clip (BVH, Kinect CSV), a robot's move with --robot, or a pack with --rust
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Write a pack as a Rust module: its bytes, aligned, and the capacities that they need as constants
+    /// Write a Rust module: a pack's bytes, aligned, and the capacities that they need as constants; or, with --robot, a move's frames at the
+    /// robot's frame rate, rad and m
     #[arg(long)]
     rust: bool,
     /// File to write: .bvh, .glb, .gltf or .csv for a clip, .rs with --rust
@@ -49,14 +51,12 @@ struct Summary {
 
 /// Runs the command.
 pub fn run(args: &Args) -> miette::Result<()> {
+    let options = args.reading.options()?;
     if args.rust {
         check_output(&args.out, "rs")?;
-        let file = PackFile::read(&args.file).into_diagnostic()?;
-        let name = args.file.file_name().unwrap_or_default().to_string_lossy();
-        let module = embed::rust_module(&file, &name).into_diagnostic()?;
+        let module = rust(args, &options)?;
         write_whole(&args.out, module.as_bytes())?;
     } else {
-        let options = args.reading.options()?;
         check_motion(&args.out, options.machine.is_some())?;
         if is_pack(&args.file) {
             return Err(miette!(
@@ -81,4 +81,22 @@ pub fn run(args: &Args) -> miette::Result<()> {
     }
     println!("{}: {} bytes", summary.out, summary.bytes);
     Ok(())
+}
+
+/// A pack, or a move of a machine, as Rust source.
+fn rust(args: &Args, options: &ReadOptions) -> miette::Result<String> {
+    let name = args.file.file_name().unwrap_or_default().to_string_lossy();
+    if is_pack(&args.file) {
+        return embed::rust_module(&PackFile::read(&args.file).into_diagnostic()?, &name).into_diagnostic();
+    }
+    let Some(machine) = &options.machine else {
+        return Err(miette!(
+            help = "give the robot: kinesic export --rust nod.csv --robot desk.kin --out nod.rs",
+            "{}: found a clip, expected a pack or a robot's move",
+            args.file.display()
+        ));
+    };
+    let source = Source::read(&args.file, options).into_diagnostic()?;
+    let clip = source.on_rig(&machine.rig, machine.limits.frame_rate).into_diagnostic()?;
+    Ok(embed::rust_move(&clip, machine, &name))
 }
