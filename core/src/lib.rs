@@ -71,7 +71,7 @@ pub use components::{Components, ComponentsState};
 pub use emotion::{Emotion, EmotionState};
 pub use engine::{Engine, Pipeline, PipelineState};
 pub use face::{FaceState, FaceSynth};
-pub use limit::{LimitState, LimitTable, Limiter};
+pub use limit::{LimitState, LimitTable, Limiter, SmoothLimitState, SmoothLimiter};
 pub use mechanics::{BodyMechanics, MechanicsState};
 pub use model::{LoadError, Pack};
 pub use play::Player;

@@ -273,14 +273,22 @@ impl Known for LimitsMeta {
             "hold_s": f64::from(self.hold),
             "decay_s": f64::from(self.decay),
             "recovery_frames": limiter.recovery_frames(),
-            "capacity": format!("Limiter::<{rows}>"),
+            "capacity": format!("{}::<{rows}>", if limits_jerk(pack) { "SmoothLimiter" } else { "Limiter" }),
         }))
     }
 
-    fn source(&self, _: &Pack) -> Result<Source, LoadError> {
+    fn source(&self, pack: &Pack) -> Result<Source, LoadError> {
         // As many rows as a frame.
-        Ok(Source { model: "Limiter::<ROWS>", state: "LimitState", constants: Vec::new() })
+        let (model, state) = match limits_jerk(pack) {
+            true => ("SmoothLimiter::<ROWS>", "SmoothLimitState"),
+            false => ("Limiter::<ROWS>", "LimitState"),
+        };
+        Ok(Source { model, state, constants: Vec::new() })
     }
+}
+
+fn limits_jerk(pack: &Pack) -> bool {
+    pack.rows("limit/jerk").is_ok()
 }
 
 /// A length in m to the centimetre, as a double that prints so.

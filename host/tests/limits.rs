@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
+use kinesic::limit::Plain;
 use kinesic::rig::JointKind;
 use kinesic::{Pipeline, PipelineState, Pose};
 use kinesic_host::clip::{JointMap, WriteOptions};
@@ -150,7 +151,7 @@ fn servo_angles_turn_the_skeleton_as_they_turn_the_robot() {
 fn on_the_device_every_angle_is_reached_and_none_passed() {
     let Import { model, urdf, .. } = made(URDF, MAP).unwrap();
     let tables = model.tables(&rig()).unwrap();
-    let pipeline = Pipeline::new(tables.rig().frames(), tables.limiter::<MAX_ROWS>().unwrap()).unwrap();
+    let pipeline = Pipeline::new(tables.rig().frames(), tables.limiter::<MAX_ROWS, Plain>().unwrap()).unwrap();
     let mut state = PipelineState::new();
     let (mut pose, mut out) = (Pose::<MAX_JOINTS>::identity(), Pose::identity());
     let first = |name: &str| tables.rig().frames().places().nth(joint(name)).unwrap().1;

@@ -3,7 +3,7 @@
 #[path = "common/servos_limits.rs"]
 mod limits;
 
-use kinesic::limit::LimitState;
+use kinesic::limit::SmoothLimitState;
 use kinesic::play::{Mode, Move, Player};
 use kinesic::{Pipeline, PipelineState};
 use limits::{ROWS, Random, SERVOS, Servos, Watch, rig};
@@ -84,7 +84,7 @@ fn from_a_thousand_states_to_a_thousand_moves_within_all_limits() {
     for _ in 0..1000 {
         let servos = Servos::random(&mut random, true);
         let limits = Pipeline::new(rig(), servos.limiter(servos.table()).unwrap()).unwrap();
-        let mut state = PipelineState::<LimitState<ROWS>, ROWS>::new();
+        let mut state = PipelineState::<SmoothLimitState<ROWS>, ROWS>::new();
         let moves = [recorded(&mut random, 60, 1), recorded(&mut random, 120, 1)];
         let mut player = Player::<SERVOS, 2>::new([0.0; SERVOS]);
         let (mut out, mut watch) = ([0.0; SERVOS], Watch::new());

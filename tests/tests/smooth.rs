@@ -3,11 +3,12 @@
 #[path = "common/servos_limits.rs"]
 mod limits;
 
-use kinesic::limit::{LimitState, LimitTable};
+use kinesic::limit::{LimitState, LimitTable, Limiter, SmoothLimitState};
+use kinesic::model::LimitsMeta;
 use kinesic::{LoadError, Pipeline, PipelineState};
 use limits::{ROWS, Random, SERVOS, Servos, Watch, rig};
 
-type State = PipelineState<LimitState<ROWS>, ROWS>;
+type State = PipelineState<SmoothLimitState<ROWS>, ROWS>;
 
 fn wild(random: &mut Random) -> f32 {
     match (random.unit() * 6.0) as u32 {
@@ -108,6 +109,26 @@ fn without_a_jerk_limit_nothing_changes() {
         let target = [0; SERVOS].map(|_| random.within(-3.0, 3.0));
         zero.step_coordinates(&mut states[0], Some(&target), &mut outs[0]);
         none.step_coordinates(&mut states[1], Some(&target), &mut outs[1]);
+        assert_eq!(outs[0].map(f32::to_bits), outs[1].map(f32::to_bits));
+    }
+}
+
+/// Where nothing has a jerk limit, the limiter without them gives the same bits; where something has one, it refuses.
+#[test]
+fn the_plain_limiter_gives_the_same_bits_and_refuses_jerk_limits() {
+    let mut random = Random(19);
+    let servos = Servos::random(&mut random, true);
+    let table = LimitTable { jerk: &[], ..servos.table() };
+    let plain = |table| Limiter::<ROWS>::new(rig(), table, LimitsMeta::default(), servos.rate);
+    assert_eq!(plain(servos.table()).unwrap_err(), LoadError::Jerk);
+    let plain = Pipeline::new(rig(), plain(table).unwrap()).unwrap();
+    let smooth = Pipeline::new(rig(), servos.limiter(table).unwrap()).unwrap();
+    let (mut state, mut other) = (PipelineState::<LimitState<ROWS>, ROWS>::new(), State::new());
+    let mut outs = [[0.0; SERVOS]; 2];
+    for _ in 0..500 {
+        let target = [0; SERVOS].map(|_| random.within(-3.0, 3.0));
+        plain.step_coordinates(&mut state, Some(&target), &mut outs[0]);
+        smooth.step_coordinates(&mut other, Some(&target), &mut outs[1]);
         assert_eq!(outs[0].map(f32::to_bits), outs[1].map(f32::to_bits));
     }
 }

@@ -2,18 +2,18 @@
 
 use super::{Controls, Engine};
 use crate::components::{Components, ComponentsState};
-use crate::limit::{LimitState, Limiter};
+use crate::limit::{SmoothLimitState, SmoothLimiter};
 use crate::rig::Frame;
 use crate::translate::{Translator, TranslatorState};
 
 /// Engines that restyle a frame, then limits: those that the pack has, one after the other. `STATES` is the translator's capacity, `COUNT`
 /// the components'. It stores and links all of them: a program that knows its pack names its engines.
 pub type Live<'a, const ROWS: usize, const STATES: usize, const COUNT: usize> =
-    (Option<Translator<'a, ROWS, STATES>>, Option<Components<'a, ROWS, COUNT>>, Option<Limiter<'a, ROWS>>);
+    (Option<Translator<'a, ROWS, STATES>>, Option<Components<'a, ROWS, COUNT>>, Option<SmoothLimiter<'a, ROWS>>);
 
 /// What they remember.
 pub type LiveState<const ROWS: usize, const STATES: usize> =
-    (TranslatorState<ROWS, STATES>, ComponentsState<ROWS>, LimitState<ROWS>);
+    (TranslatorState<ROWS, STATES>, ComponentsState<ROWS>, SmoothLimitState<ROWS>);
 
 /// True if the pack has any of them.
 pub fn is_any<const ROWS: usize, const STATES: usize, const COUNT: usize>(

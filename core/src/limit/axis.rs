@@ -1,4 +1,4 @@
-//! One coordinate under position, velocity and acceleration limits.
+//! What a coordinate remembers, and one coordinate under position, velocity and acceleration limits.
 
 use crate::kernel::sqrt;
 
@@ -7,7 +7,7 @@ pub(super) const CATCH_UP: f32 = 0.5;
 
 /// What one coordinate may do. Rates are per frame: `velocity dt`, `acceleration dt^2` and `jerk dt^3`; a jerk of 0 is no limit.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Bounds {
+pub struct Bounds {
     pub lower: f32,
     pub upper: f32,
     pub speed: f32,
@@ -23,12 +23,60 @@ impl Bounds {
     }
 }
 
+/// What a limiter remembers of one coordinate: [`Plain`], or [`Smooth`](super::Smooth) where jerk is limited too.
+pub trait Axis: Along {}
+
+/// One coordinate on its way.
+pub trait Along: Copy + PartialEq + core::fmt::Debug {
+    /// True if jerk limits are kept.
+    const JERK: bool;
+
+    /// Stands at 0.
+    const REST: Self;
+
+    /// Stands there.
+    fn standing(at: f32) -> Self;
+
+    /// Where it is.
+    fn at(&self) -> f32;
+
+    /// How far the last target was when it had gone.
+    fn left(&self) -> f32;
+
+    /// One frame towards `target`, which lies within the bounds.
+    fn advance(&mut self, target: f32, bounds: &Bounds);
+}
+
 /// Where a coordinate is, how far it went in the last frame, and how far the last target was when it had.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Coordinate {
-    pub at: f32,
-    pub went: f32,
-    pub left: f32,
+pub struct Plain {
+    pub(super) at: f32,
+    pub(super) went: f32,
+    pub(super) left: f32,
+}
+
+impl Axis for Plain {}
+
+impl Along for Plain {
+    const JERK: bool = false;
+    const REST: Self = Self { at: 0.0, went: 0.0, left: 0.0 };
+
+    fn standing(at: f32) -> Self {
+        Self { at, ..Self::REST }
+    }
+
+    fn at(&self) -> f32 {
+        self.at
+    }
+
+    fn left(&self) -> f32 {
+        self.left
+    }
+
+    #[inline(always)]
+    fn advance(&mut self, target: f32, bounds: &Bounds) {
+        *self = self.gone(target, bounds);
+    }
 }
 
 /// The largest step per frame from which braking by `change` a frame ends within `room`: the inverse of
@@ -48,11 +96,11 @@ pub(super) fn within(x: f32, lower: f32, upper: f32) -> f32 {
     if x > upper { upper } else { x }
 }
 
-impl Coordinate {
+impl Plain {
     /// One frame towards `target`, which lies within the bounds. Cost: about 15 multiply-adds; a root and two divisions more where it
     /// has to catch up, and as many where it has to brake.
     #[inline(always)]
-    pub fn advance(self, target: f32, bounds: &Bounds) -> Self {
+    pub(super) fn gone(self, target: f32, bounds: &Bounds) -> Self {
         let Bounds { lower, upper, speed, change, .. } = *bounds;
         let error = target - self.at;
         // The target's own step, and beside it what catches up with where the target was.
@@ -93,9 +141,9 @@ mod tests {
     #[test]
     fn a_motion_within_the_limits_passes() {
         let wave = |frame: i32| 0.5 * libm::sinf(frame as f32 * 0.05);
-        let mut x = Coordinate { at: 0.0, went: 0.0, left: 0.0 };
+        let mut x = Plain { at: 0.0, went: 0.0, left: 0.0 };
         for frame in 0..400 {
-            x = x.advance(wave(frame), &BOUNDS);
+            x = x.gone(wave(frame), &BOUNDS);
             // It starts with a jump of speed, which takes a few frames to catch up with.
             assert!(frame < 40 || x.left.abs() < 1e-6, "{frame}: {x:?}");
         }
@@ -103,11 +151,11 @@ mod tests {
 
     #[test]
     fn it_arrives_at_a_bound_without_overshoot_or_bounce() {
-        let mut x = Coordinate { at: -1.0, went: 0.0, left: 0.0 };
+        let mut x = Plain { at: -1.0, went: 0.0, left: 0.0 };
         let mut frames = 0;
         while x.left != 0.0 || frames == 0 {
             let before = x;
-            x = x.advance(BOUNDS.upper, &BOUNDS);
+            x = x.gone(BOUNDS.upper, &BOUNDS);
             assert!(x.went >= 0.0 && (x.went - before.went).abs() < BOUNDS.change + 1e-6, "{before:?} {x:?}");
             frames += 1;
             assert!(frames < 200, "{x:?}");

@@ -2,8 +2,8 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `axis` | one coordinate: position, velocity and acceleration limits, with braking distance |
-//! | `smooth` | one coordinate with a jerk limit beside them: which step it makes |
+//! | `axis` | [`Plain`]: one coordinate: position, velocity and acceleration limits, with braking distance |
+//! | `smooth` | [`Smooth`]: one coordinate with a jerk limit beside them: which step it makes |
 //! | `stop`, `land` | plans to stop within all four; ways that end on the target |
 //! | `free` | a vector without position limits: the root's way over the ground |
 //! | `model` | [`Limiter`]: a checked view of the tables |
@@ -42,5 +42,7 @@ mod state;
 mod step;
 mod stop;
 
-pub use model::{LimitTable, Limiter};
-pub use state::{Clamped, LimitReport, LimitState};
+pub use axis::{Axis, Plain};
+pub use model::{LimitTable, Limiter, LimiterOf, SmoothLimiter};
+pub use smooth::Smooth;
+pub use state::{Clamped, LimitReport, LimitState, LimitStateOf, SmoothLimitState};

@@ -2,7 +2,10 @@
 
 use core::iter::repeat;
 
-use super::axis::{Bounds, CATCH_UP, reach};
+use core::marker::PhantomData;
+
+use super::axis::{Axis, Bounds, CATCH_UP, Plain, reach};
+use super::smooth::Smooth;
 use crate::engine::FromPack;
 use crate::kernel::sqrt;
 use crate::model::{LimitsMeta, LoadError, ModelMeta, Pack};
@@ -26,9 +29,17 @@ pub struct LimitTable<'a> {
     pub rest: &'a [[f32; 3]],
 }
 
-/// The last stage: limits for up to `ROWS` rows of coordinates, borrowed from a pack or from given tables.
+/// Limits of position, velocity and acceleration. A pack that limits jerk too is refused.
+pub type Limiter<'a, const ROWS: usize> = LimiterOf<'a, ROWS, Plain>;
+
+/// Limits of position, velocity, acceleration and, where the table has them, jerk. Code and state are larger than a [`Limiter`]'s; what
+/// has no jerk limit goes the same way, to the bit.
+pub type SmoothLimiter<'a, const ROWS: usize> = LimiterOf<'a, ROWS, Smooth>;
+
+/// The last stage: limits for up to `ROWS` rows of coordinates, borrowed from a pack or from given tables. `A` is what it remembers of each
+/// coordinate.
 #[derive(Clone, Copy, Debug)]
-pub struct Limiter<'a, const ROWS: usize> {
+pub struct LimiterOf<'a, const ROWS: usize, A> {
     meta: LimitsMeta,
     table: LimitTable<'a>,
     rig: Rig<'a>,
@@ -38,6 +49,7 @@ pub struct Limiter<'a, const ROWS: usize> {
     pub(super) hold_frames: u32,
     /// Share of the way to rest in a frame.
     pub(super) decay: f32,
+    axis: PhantomData<A>,
 }
 
 /// Largest step, and largest change of a step, per frame.
@@ -62,7 +74,7 @@ const LONGEST_STOP: f32 = 1e4;
 /// Coordinates lie within this, rad or m.
 const FARTHEST: f32 = 100.0;
 
-impl<'a, const ROWS: usize> Limiter<'a, ROWS> {
+impl<'a, const ROWS: usize, A: Axis> LimiterOf<'a, ROWS, A> {
     /// The limits of a pack, after every check that makes [`step`](Self::step) infallible.
     pub fn load(pack: &Pack<'a>) -> Result<Self, LoadError> {
         let metadata = pack.metadata();
@@ -121,6 +133,7 @@ impl<'a, const ROWS: usize> Limiter<'a, ROWS> {
             heading,
             hold_frames: (meta.hold * frame_rate + 0.5) as u32,
             decay: if meta.decay > frame_time { frame_time / meta.decay } else { 1.0 },
+            axis: PhantomData,
         };
         limiter.check_table(rows)?;
         Ok(limiter)
@@ -158,6 +171,9 @@ impl<'a, const ROWS: usize> Limiter<'a, ROWS> {
             if !STEPS.contains(&change) {
                 return refuse("limit/acceleration");
             }
+            if jerk != 0.0 && !A::JERK {
+                return Err(LoadError::Jerk);
+            }
             if jerk != 0.0 && !(STEPS.contains(&jerk) && bounds.stop_frames() < LONGEST_STOP) {
                 return refuse("limit/jerk");
             }
@@ -175,7 +191,7 @@ impl<'a, const ROWS: usize> Limiter<'a, ROWS> {
     }
 
     /// The limits of every coordinate, in order; `None` for travel, and for what a row does not use. Cost: two products per coordinate.
-    pub(super) fn limits(&self) -> impl Iterator<Item = Option<Limit>> + use<'a, ROWS> {
+    pub(super) fn limits(&self) -> impl Iterator<Item = Option<Limit>> + use<'a, ROWS, A> {
         let (table, time) = (self.table, self.frame_time);
         let flat = |rows: &'a [[f32; 3]]| rows.as_flattened().iter();
         let ranges = flat(table.lower).zip(flat(table.upper)).zip(flat(table.rest));
@@ -225,7 +241,7 @@ impl<'a, const ROWS: usize> Limiter<'a, ROWS> {
     }
 }
 
-impl<'a, const ROWS: usize> FromPack<'a> for Limiter<'a, ROWS> {
+impl<'a, const ROWS: usize, A: Axis> FromPack<'a> for LimiterOf<'a, ROWS, A> {
     fn from_pack(pack: &Pack<'a>) -> Result<Self, LoadError> {
         Self::load(pack)
     }

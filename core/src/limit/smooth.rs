@@ -3,7 +3,7 @@
 //! Every step leaves a [plan](Plan) to stop within all limits. A step that leaves none is not made: the plan of the step before goes on
 //! instead, so that there always is one. Which of the other steps is made decides how well the target is followed, not what is guaranteed.
 
-use super::axis::{Bounds, CATCH_UP, Coordinate, within};
+use super::axis::{Along, Axis, Bounds, CATCH_UP, Plain, within};
 use super::land::{Budget, Way, end};
 use super::stop::{Motion, Plan, end as stop_end};
 use crate::kernel::sqrt;
@@ -17,9 +17,10 @@ const LANDING: f32 = 0.6;
 /// Rounds of the searches for a step.
 const ROUNDS: usize = 10;
 
-/// What a coordinate with a jerk limit remembers beside where it is.
+/// A coordinate that may have a jerk limit: where it is, and what it has in mind.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Smooth {
+pub struct Smooth {
+    axis: Plain,
     /// Last change of its step.
     change: f32,
     /// The last target, its last step and the last change of that.
@@ -29,18 +30,43 @@ pub(super) struct Smooth {
     way: Option<Way>,
 }
 
-impl Smooth {
-    pub const REST: Self =
-        Self { change: 0.0, target: Motion { at: 0.0, step: 0.0, change: 0.0 }, plan: Plan::REST, way: None };
+impl Axis for Smooth {}
 
-    /// At rest at `at`.
-    pub fn rest(at: f32) -> Self {
-        Self { target: Motion { at, ..Self::REST.target }, ..Self::REST }
+impl Along for Smooth {
+    const JERK: bool = true;
+    const REST: Self = Self {
+        axis: Plain::REST,
+        change: 0.0,
+        target: Motion { at: 0.0, step: 0.0, change: 0.0 },
+        plan: Plan::REST,
+        way: None,
+    };
+
+    fn standing(at: f32) -> Self {
+        Self { axis: Plain::standing(at), target: Motion { at, ..Self::REST.target }, ..Self::REST }
     }
 
+    fn at(&self) -> f32 {
+        self.axis.at
+    }
+
+    fn left(&self) -> f32 {
+        self.axis.left
+    }
+
+    fn advance(&mut self, target: f32, bounds: &Bounds) {
+        self.axis = match bounds.jerk > 0.0 {
+            true => self.smoothly(target, bounds),
+            false => self.axis.gone(target, bounds),
+        };
+    }
+}
+
+impl Smooth {
     /// One frame towards `target`, which lies within the bounds. Cost: about 100 multiply-adds, three roots and ten divisions where the
     /// target can be followed, up to twenty times as much where it has to be caught up with.
-    pub fn advance(&mut self, axis: Coordinate, target: f32, bounds: &Bounds) -> Coordinate {
+    fn smoothly(&mut self, target: f32, bounds: &Bounds) -> Plain {
+        let axis = self.axis;
         let last = self.target;
         self.target = followed(last, target);
         let own = self.own(&last, bounds);
@@ -55,10 +81,10 @@ impl Smooth {
         if (at - motion.at).abs() > 1e-4 * bounds.speed + 1e-6 {
             // Other limits than a frame ago: it stands at the bound.
             *self = Self { target: self.target, ..Self::REST };
-            return Coordinate { at, went: 0.0, left: target - at };
+            return Plain { at, went: 0.0, left: target - at };
         }
         (self.change, self.plan) = (motion.change, plan);
-        Coordinate { at, went: motion.step, left: target - at }
+        Plain { at, went: motion.step, left: target - at }
     }
 
     /// The target's own motion, if it is one that could be followed; else it counts as standing.

@@ -1,6 +1,6 @@
 //! What a limiter remembers and reports.
 
-use super::axis::Coordinate;
+use super::axis::{Axis, Plain};
 use super::smooth::Smooth;
 use crate::pose::Heading;
 
@@ -34,13 +34,18 @@ pub struct LimitReport {
     pub clamped_frames: u32,
 }
 
+/// What a [`Limiter`](super::Limiter) remembers.
+pub type LimitState<const ROWS: usize> = LimitStateOf<ROWS, Plain>;
+
+/// What a [`SmoothLimiter`](super::SmoothLimiter) remembers; about four times as much.
+pub type SmoothLimitState<const ROWS: usize> = LimitStateOf<ROWS, Smooth>;
+
 /// What a running limiter remembers: where every coordinate is and how fast it goes.
 ///
-/// A new state is at rest, as the table says; [`Limiter::start`](super::Limiter::start) puts it where the robot is.
+/// A new state is at rest, as the table says; [`Limiter::start`](super::LimiterOf::start) puts it where the robot is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LimitState<const ROWS: usize> {
-    pub(super) axes: [[Coordinate; 3]; ROWS],
-    pub(super) smooth: [[Smooth; 3]; ROWS],
+pub struct LimitStateOf<const ROWS: usize, A> {
+    pub(super) axes: [[A; 3]; ROWS],
     pub(super) clamped: [[Clamped; 3]; ROWS],
     /// Last step of the root over the ground, and what it was short of then, world, m.
     pub(super) root_step: [f32; 2],
@@ -53,15 +58,13 @@ pub struct LimitState<const ROWS: usize> {
     pub(super) report: LimitReport,
 }
 
-const REST: Coordinate = Coordinate { at: 0.0, went: 0.0, left: 0.0 };
 const FREE: Clamped = Clamped { position: false, rate: false };
 
-impl<const ROWS: usize> LimitState<ROWS> {
+impl<const ROWS: usize, A: Axis> LimitStateOf<ROWS, A> {
     /// At rest; the heading is that of the first frame.
     pub const fn new() -> Self {
         Self {
-            axes: [[REST; 3]; ROWS],
-            smooth: [[Smooth::REST; 3]; ROWS],
+            axes: [[A::REST; 3]; ROWS],
             clamped: [[FREE; 3]; ROWS],
             root_step: [0.0; 2],
             root_error: [0.0; 2],
@@ -85,7 +88,7 @@ impl<const ROWS: usize> LimitState<ROWS> {
 
     /// Where a coordinate is, rad or m; `None` past the last row.
     pub fn coordinate(&self, index: usize) -> Option<f32> {
-        self.axes.as_flattened().get(index).map(|axis| axis.at)
+        self.axes.as_flattened().get(index).map(|axis| axis.at())
     }
 
     /// Why a coordinate is not where the last frame told it to be; `None` past the last row.
@@ -94,7 +97,7 @@ impl<const ROWS: usize> LimitState<ROWS> {
     }
 }
 
-impl<const ROWS: usize> Default for LimitState<ROWS> {
+impl<const ROWS: usize, A: Axis> Default for LimitStateOf<ROWS, A> {
     fn default() -> Self {
         Self::new()
     }

@@ -2,12 +2,11 @@
 
 use nalgebra::Vector3;
 
-use super::axis::{Bounds, Coordinate, within};
+use super::axis::{Axis, Bounds, Plain, within};
 use super::free;
 use super::model::Limit;
-use super::smooth::Smooth;
 use super::state::Clamped;
-use super::{LimitState, Limiter};
+use super::{LimitStateOf, LimiterOf};
 use crate::engine::Engine;
 use crate::kernel::sin_cos;
 use crate::pose::Heading;
@@ -19,31 +18,29 @@ const CLAMPED: f32 = 1e-5;
 /// No limit.
 const FAR: f32 = 1e6;
 
-impl<const ROWS: usize> Limiter<'_, ROWS> {
+impl<const ROWS: usize, A: Axis> LimiterOf<'_, ROWS, A> {
     /// Puts the state where the robot is, as far as that lies within the position limits, standing still. Without it the coordinates
     /// start at rest, as the table says. A frame that is not [sound](Frame::is_sound) is ignored.
-    pub fn start(&self, state: &mut LimitState<ROWS>, frame: &Frame<ROWS>) {
+    pub fn start(&self, state: &mut LimitStateOf<ROWS, A>, frame: &Frame<ROWS>) {
         state.reset();
         self.at_rest(state);
         if !frame.is_sound() {
             return;
         }
         state.heading = Some(frame.heading);
-        let axes = state.axes.as_flattened_mut().iter_mut().zip(state.smooth.as_flattened_mut());
-        for ((limit, (axis, smooth)), x) in self.limits().zip(axes).zip(frame.coordinates()) {
+        let axes = state.axes.as_flattened_mut().iter_mut().zip(frame.coordinates());
+        for (limit, (axis, x)) in self.limits().zip(axes) {
             if let Some(Limit { bounds, .. }) = limit {
-                let at = within(*x, bounds.lower, bounds.upper);
-                (*axis, *smooth) = (Coordinate { at, went: 0.0, left: 0.0 }, Smooth::rest(at));
+                *axis = A::standing(within(*x, bounds.lower, bounds.upper));
             }
         }
     }
 
-    fn at_rest(&self, state: &mut LimitState<ROWS>) {
+    fn at_rest(&self, state: &mut LimitStateOf<ROWS, A>) {
         state.started = true;
-        let axes = state.axes.as_flattened_mut().iter_mut().zip(state.smooth.as_flattened_mut());
-        for (limit, (axis, smooth)) in self.limits().zip(axes) {
+        for (limit, axis) in self.limits().zip(state.axes.as_flattened_mut()) {
             if let Some(Limit { rest, .. }) = limit {
-                (*axis, *smooth) = (Coordinate { at: rest, went: 0.0, left: 0.0 }, Smooth::rest(rest));
+                *axis = A::standing(rest);
             }
         }
     }
@@ -51,7 +48,7 @@ impl<const ROWS: usize> Limiter<'_, ROWS> {
     /// Limits one frame in place. Infallible; every loop has a length fixed at load time. A frame that is not sound counts as none:
     /// see [`idle`](Self::idle). Cost: about 30 multiply-adds, two roots and four divisions per coordinate; with a jerk limit about 100, three and ten,
     /// and twenty times as much while it catches up with its target.
-    pub fn step(&self, state: &mut LimitState<ROWS>, frame: &mut Frame<ROWS>) {
+    pub fn step(&self, state: &mut LimitStateOf<ROWS, A>, frame: &mut Frame<ROWS>) {
         if !frame.is_sound() {
             return self.idle(state, frame);
         }
@@ -62,30 +59,28 @@ impl<const ROWS: usize> Limiter<'_, ROWS> {
     /// No frame came. The last target stays for `hold` seconds, then the coordinates go to rest with the time constant `decay`, the root's
     /// height among them; over the ground the root finishes its way and stays. The next sound frame is the target again; the way to it keeps all limits, and ends within
     /// [`recovery_frames`](Self::recovery_frames) if it stands still.
-    pub fn idle(&self, state: &mut LimitState<ROWS>, frame: &mut Frame<ROWS>) {
+    pub fn idle(&self, state: &mut LimitStateOf<ROWS, A>, frame: &mut Frame<ROWS>) {
         state.report.gap = state.report.gap.saturating_add(1);
         self.advance(state, frame, false);
     }
 
-    fn advance(&self, state: &mut LimitState<ROWS>, frame: &mut Frame<ROWS>, told: bool) {
+    fn advance(&self, state: &mut LimitStateOf<ROWS, A>, frame: &mut Frame<ROWS>, told: bool) {
         if !state.started {
             self.at_rest(state);
         }
         let decay = if state.report.gap > self.hold_frames { self.decay } else { 0.0 };
         let (mut position, mut rate) = (0u16, 0u16);
         let axes = state.axes.as_flattened_mut().iter_mut().zip(state.clamped.as_flattened_mut());
-        let axes = axes.zip(state.smooth.as_flattened_mut());
-        for ((limit, ((axis, clamped), smooth)), x) in self.limits().zip(axes).zip(frame.coordinates_mut()) {
+        for ((limit, (axis, clamped)), x) in self.limits().zip(axes).zip(frame.coordinates_mut()) {
             let Some(Limit { bounds, rest }) = limit else { continue };
-            let last = axis.at + axis.left;
+            let last = axis.at() + axis.left();
             let wanted = if told { *x } else { last + (rest - last) * decay };
             let inside = within(wanted, bounds.lower, bounds.upper);
-            *axis =
-                if bounds.jerk > 0.0 { smooth.advance(*axis, inside, &bounds) } else { axis.advance(inside, &bounds) };
-            *clamped = Clamped { position: (wanted - inside).abs() > CLAMPED, rate: axis.left.abs() > CLAMPED };
+            axis.advance(inside, &bounds);
+            *clamped = Clamped { position: (wanted - inside).abs() > CLAMPED, rate: axis.left().abs() > CLAMPED };
             position = position.saturating_add(u16::from(clamped.position));
             rate = rate.saturating_add(u16::from(clamped.rate));
-            *x = axis.at;
+            *x = axis.at();
         }
         if self.rig().travels() {
             rate += u16::from(self.turn(state, frame, told)) + u16::from(self.travel(state, frame, told));
@@ -97,13 +92,13 @@ impl<const ROWS: usize> Limiter<'_, ROWS> {
     }
 
     /// The heading; true if it could not follow. Travel of `frame` is in the source's heading until [`travel`](Self::travel).
-    fn turn(&self, state: &mut LimitState<ROWS>, frame: &mut Frame<ROWS>, told: bool) -> bool {
+    fn turn(&self, state: &mut LimitStateOf<ROWS, A>, frame: &mut Frame<ROWS>, told: bool) -> bool {
         let here = state.heading.unwrap_or(frame.heading);
         let error = if told { frame.heading.angle_from(here) } else { state.heading_error };
         let bounds =
             Bounds { lower: -FAR, upper: FAR, speed: self.heading.speed, change: self.heading.change, jerk: 0.0 };
-        let axis = Coordinate { at: 0.0, went: state.heading_step, left: state.heading_error };
-        let axis = axis.advance(error, &bounds);
+        let axis = Plain { at: 0.0, went: state.heading_step, left: state.heading_error };
+        let axis = axis.gone(error, &bounds);
         (state.heading_step, state.heading_error) = (axis.went, axis.left);
         let (sin, cos) = sin_cos(axis.at);
         state.heading = Some(here.turned(sin, cos));
@@ -111,7 +106,7 @@ impl<const ROWS: usize> Limiter<'_, ROWS> {
     }
 
     /// The root over the ground; true if it could not follow.
-    fn travel(&self, state: &mut LimitState<ROWS>, frame: &mut Frame<ROWS>, told: bool) -> bool {
+    fn travel(&self, state: &mut LimitStateOf<ROWS, A>, frame: &mut Frame<ROWS>, told: bool) -> bool {
         let heading = state.heading.unwrap_or(Heading::FORWARD);
         let flat = |[x, z]: [f32; 2]| Vector3::new(x, 0.0, z);
         let left = flat(state.root_error);
@@ -130,18 +125,18 @@ impl<const ROWS: usize> Limiter<'_, ROWS> {
     }
 }
 
-impl<const ROWS: usize> Engine<ROWS> for Limiter<'_, ROWS> {
-    type State = LimitState<ROWS>;
+impl<const ROWS: usize, A: Axis> Engine<ROWS> for LimiterOf<'_, ROWS, A> {
+    type State = LimitStateOf<ROWS, A>;
 
     fn start(&self, state: &mut Self::State, frame: &Frame<ROWS>) {
-        Limiter::start(self, state, frame);
+        LimiterOf::start(self, state, frame);
     }
 
     fn step(&self, state: &mut Self::State, frame: &mut Frame<ROWS>) {
-        Limiter::step(self, state, frame);
+        LimiterOf::step(self, state, frame);
     }
 
     fn idle(&self, state: &mut Self::State, frame: &mut Frame<ROWS>) {
-        Limiter::idle(self, state, frame);
+        LimiterOf::idle(self, state, frame);
     }
 }

@@ -65,6 +65,8 @@ pub enum LoadError {
         /// Index of the tensor in the metadata.
         tensor: usize,
     },
+    /// The limits of a pack hold jerk limits, which a [`Limiter`](crate::Limiter) does not keep: a [`SmoothLimiter`](crate::SmoothLimiter) does.
+    Jerk,
     /// The file has no such model.
     NoModel {
         /// Name of the engine that was asked for.
@@ -138,6 +140,7 @@ impl fmt::Display for LoadError {
             Self::Metadata => f.write_str("the metadata cannot be decoded"),
             Self::Range { field } => write!(f, "the metadata is out of range: {field}"),
             Self::Bounds { tensor } => write!(f, "tensor {tensor} is misaligned or reaches past the end of the file"),
+            Self::Jerk => f.write_str("the pack has jerk limits: load it as a SmoothLimiter"),
             Self::NoModel { expected } => write!(f, "the pack holds no {expected}"),
             Self::NoTensor { tensor } => write!(f, "tensor {tensor} is missing"),
             Self::Shape { tensor, found, expected } => {

@@ -22,14 +22,14 @@ pub use play::{Clamps, JointClamps, play};
 pub use rows::Tables;
 pub use table::{Entry, Height, Table};
 
-use kinesic::limit::Limiter;
+use kinesic::limit::{Smooth, SmoothLimiter};
 use kinesic::model::{Kind, LimitsMeta, LoadError, ModelMeta, Pack};
 
 use crate::pack::{PackWriter, Provenance};
 use crate::rig::{JointCoordinates, MAX_ROWS, Rig, RigError};
 
 /// The limiter as the host steps it.
-pub type HostLimiter<'a> = Limiter<'a, MAX_ROWS>;
+pub type HostLimiter<'a> = SmoothLimiter<'a, MAX_ROWS>;
 
 /// Limits of every joint of a rig, in its order.
 #[derive(Clone, Debug, PartialEq)]
@@ -94,9 +94,9 @@ impl LimitsModel {
         Tables::new(self, self.rig(rig)?)
     }
 
-    /// See [`Limiter::recovery_frames`].
+    /// See [`LimiterOf::recovery_frames`](kinesic::limit::LimiterOf::recovery_frames).
     pub fn recovery_frames(&self, rig: &Rig) -> Result<u32, LoadError> {
-        Ok(self.tables(rig)?.limiter::<MAX_ROWS>()?.recovery_frames())
+        Ok(self.tables(rig)?.limiter::<MAX_ROWS, Smooth>()?.recovery_frames())
     }
 
     /// The tables of a pack of this or another kind.

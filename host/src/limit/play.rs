@@ -1,6 +1,6 @@
 //! A motion through the limits of its pack, as the last stage of the device would pass it on.
 
-use kinesic::limit::LimitState;
+use kinesic::limit::SmoothLimitState;
 use kinesic::model::LoadError;
 use kinesic::{Pack, Rig as DeviceRig};
 use serde::Serialize;
@@ -37,7 +37,7 @@ pub fn play(pack: &Pack, rig: &Rig, clip: &Clip) -> Result<Option<(Clip, Clamps)
         Err(LoadError::NoModel { .. }) => return Ok(None),
         limiter => limiter?,
     };
-    let mut state = Box::new(LimitState::<MAX_ROWS>::new());
+    let mut state = Box::new(SmoothLimitState::<MAX_ROWS>::new());
     let mut joints: Vec<JointClamps> = Vec::new();
     joints.extend(
         rig.skeleton.joints.iter().map(|joint| JointClamps { joint: joint.name.clone(), ..Default::default() }),
@@ -55,7 +55,7 @@ pub fn play(pack: &Pack, rig: &Rig, clip: &Clip) -> Result<Option<(Clip, Clamps)
     Ok(Some((limited, Clamps { frames: clip.frames(), clamped_frames, joints })))
 }
 
-fn count(rig: &DeviceRig, state: &LimitState<MAX_ROWS>, joints: &mut [JointClamps]) {
+fn count(rig: &DeviceRig, state: &SmoothLimitState<MAX_ROWS>, joints: &mut [JointClamps]) {
     for ((kind, first), joint) in rig.places().zip(joints) {
         let own = || (first..first + kind.coordinates()).filter_map(|at| state.clamped(at));
         joint.position += usize::from(own().any(|clamped| clamped.position));

@@ -1,6 +1,6 @@
 //! The limits of every coordinate, as the device reads them.
 
-use kinesic::limit::{LimitTable, Limiter};
+use kinesic::limit::{Axis, LimitTable, LimiterOf, Smooth};
 use kinesic::model::{LimitsMeta, LoadError};
 
 use super::{HeightLimit, JointLimit, LimitsModel};
@@ -53,13 +53,13 @@ impl Tables {
             frame_rate: model.frame_rate as f32,
             rig,
         };
-        tables.limiter::<{ crate::rig::MAX_ROWS }>()?;
+        tables.limiter::<{ crate::rig::MAX_ROWS }, Smooth>()?;
         Ok(tables)
     }
 
-    /// The limiter of these tables.
-    pub fn limiter<const ROWS: usize>(&self) -> Result<Limiter<'_, ROWS>, LoadError> {
-        Limiter::new(self.rig.frames(), self.view(), self.meta, self.frame_rate)
+    /// The limiter of these tables, with jerk limits or without.
+    pub fn limiter<const ROWS: usize, A: Axis>(&self) -> Result<LimiterOf<'_, ROWS, A>, LoadError> {
+        LimiterOf::new(self.rig.frames(), self.view(), self.meta, self.frame_rate)
     }
 
     /// The rig whose coordinates are limited.

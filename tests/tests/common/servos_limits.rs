@@ -1,6 +1,6 @@
 //! Limits of six servos with jerk, random ones, and a watch over what comes out.
 
-use kinesic::limit::{LimitTable, Limiter};
+use kinesic::limit::{LimitTable, SmoothLimiter};
 use kinesic::model::LimitsMeta;
 use kinesic::rig::JointKind;
 use kinesic::{LoadError, Rig};
@@ -69,8 +69,8 @@ impl Servos {
         }
     }
 
-    pub fn limiter<'a>(&self, table: LimitTable<'a>) -> Result<Limiter<'a, ROWS>, LoadError> {
-        Limiter::new(rig(), table, LimitsMeta::default(), self.rate)
+    pub fn limiter<'a>(&self, table: LimitTable<'a>) -> Result<SmoothLimiter<'a, ROWS>, LoadError> {
+        SmoothLimiter::new(rig(), table, LimitsMeta::default(), self.rate)
     }
 
     /// Bounds of a coordinate per frame.

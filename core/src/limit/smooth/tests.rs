@@ -6,12 +6,11 @@ use super::*;
 const BOUNDS: Bounds = Bounds { lower: -1.0, upper: 0.8, speed: 0.05, change: 0.004, jerk: 0.0005 };
 
 fn run(bounds: &Bounds, at: f32, frames: usize, mut target: impl FnMut(usize) -> f32) -> std::vec::Vec<f32> {
-    let mut axis = Coordinate { at, went: 0.0, left: 0.0 };
-    let mut smooth = Smooth::rest(at);
+    let mut smooth = Smooth::standing(at);
     (0..frames)
         .map(|frame| {
-            axis = smooth.advance(axis, target(frame), bounds);
-            axis.at
+            smooth.advance(target(frame), bounds);
+            smooth.at()
         })
         .collect()
 }
