@@ -1,7 +1,5 @@
 //! The limiter: a checked, immutable view of the tables.
 
-use core::iter::repeat;
-
 use core::marker::PhantomData;
 
 use super::axis::{Axis, Bounds, CATCH_UP, Plain, reach};
@@ -152,6 +150,9 @@ impl<'a, const ROWS: usize, A: Axis> LimiterOf<'a, ROWS, A> {
         if let Some((tensor, found)) = counts.into_iter().find(|(_, count)| *count != rows) {
             return Err(LoadError::Shape { tensor, found, expected: rows });
         }
+        if !A::JERK && table.jerk.as_flattened().iter().any(|jerk| *jerk != 0.0) {
+            return Err(LoadError::Jerk);
+        }
         let height = self.rig.travels().then_some(1);
         let joints = self.rig.places().flat_map(|(kind, first)| first..first + kind.coordinates());
         let mut used = height.into_iter().chain(joints).peekable();
@@ -170,9 +171,6 @@ impl<'a, const ROWS: usize, A: Axis> LimiterOf<'a, ROWS, A> {
             }
             if !STEPS.contains(&change) {
                 return refuse("limit/acceleration");
-            }
-            if jerk != 0.0 && !A::JERK {
-                return Err(LoadError::Jerk);
             }
             if jerk != 0.0 && !(STEPS.contains(&jerk) && bounds.stop_frames() < LONGEST_STOP) {
                 return refuse("limit/jerk");
@@ -195,9 +193,11 @@ impl<'a, const ROWS: usize, A: Axis> LimiterOf<'a, ROWS, A> {
         let (table, time) = (self.table, self.frame_time);
         let flat = |rows: &'a [[f32; 3]]| rows.as_flattened().iter();
         let ranges = flat(table.lower).zip(flat(table.upper)).zip(flat(table.rest));
-        let rates = flat(table.velocity).zip(flat(table.acceleration)).zip(flat(table.jerk).chain(repeat(&0.0)));
-        ranges.zip(rates).map(move |(((lower, upper), rest), ((velocity, acceleration), jerk))| {
-            let (speed, change, jerk) = (velocity * time, acceleration * (time * time), jerk * (time * time * time));
+        let rates = flat(table.velocity).zip(flat(table.acceleration));
+        let mut jerks = flat(table.jerk);
+        ranges.zip(rates).map(move |(((lower, upper), rest), (velocity, acceleration))| {
+            let (speed, change) = (velocity * time, acceleration * (time * time));
+            let jerk = if A::JERK { jerks.next().map_or(0.0, |jerk| jerk * (time * time * time)) } else { 0.0 };
             let limit = Limit { bounds: Bounds { lower: *lower, upper: *upper, speed, change, jerk }, rest: *rest };
             (*velocity > 0.0).then_some(limit)
         })
