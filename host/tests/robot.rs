@@ -45,8 +45,9 @@ fn link(robot: &Robot, values: &[(&str, f64)], name: &str) -> Isometry3<f64> {
     for (joint, value) in values {
         own[robot.find(joint).unwrap()] = *value;
     }
-    let frames = robot.link_frames(&robot.followed(&own));
-    frames.into_iter().find(|(link, _)| link == name).unwrap().1
+    let values = robot.followed(&own);
+    let at = robot.joints.iter().position(|joint| joint.child == name).unwrap();
+    robot.placed(&|joint| values[joint])[at]
 }
 
 fn says(error: &RobotError, words: &[&str]) {
@@ -107,9 +108,10 @@ fn a_urdf_and_an_mjcf_of_one_robot_agree() {
       </body></worldbody></mujoco>"#;
     let [urdf, mjcf] = [urdf, mjcf].map(|text| Robot::parse(text).unwrap());
     for values in [[0.0, 0.0], [0.7, 0.4], [-1.0, 1.0]] {
-        for ((link, a), (other, b)) in urdf.link_frames(&values).iter().zip(mjcf.link_frames(&values)) {
-            assert_eq!(*link, other);
-            assert!((a.to_homogeneous() - b.to_homogeneous()).norm() < 1e-9, "{link}");
+        let placed = |robot: &Robot| robot.placed(&|at| values[at]);
+        for (at, (a, b)) in placed(&urdf).iter().zip(placed(&mjcf)).enumerate() {
+            assert_eq!(urdf.joints[at].child, mjcf.joints[at].child);
+            assert!((a.to_homogeneous() - b.to_homogeneous()).norm() < 1e-9, "{}", urdf.joints[at].child);
         }
     }
 }

@@ -42,11 +42,25 @@ pub fn check_output(path: &Path, extension: &str) -> miette::Result<()> {
 /// Formats of a robot's motions.
 const MOVES: [&str; 5] = ["csv", "json", "jsonl", "yaml", "yml"];
 
+fn is_moves(path: &Path) -> bool {
+    path.extension().is_some_and(|found| MOVES.iter().any(|own| found.eq_ignore_ascii_case(own)))
+}
+
+/// As [`check_output`], for a motion in a robot's joints.
+pub fn check_moves(path: &Path) -> miette::Result<()> {
+    if !is_moves(path) {
+        return Err(miette!(
+            help = format!("name it {}", path.with_extension("csv").display()),
+            "{}: the output is a .csv, .json, .jsonl or .yaml file",
+            path.display()
+        ));
+    }
+    check_folder(path)
+}
+
 /// As [`check_output`], for a motion of a body or, with `machine`, of a robot: its extension says the format.
 pub fn check_motion(path: &Path, machine: bool) -> miette::Result<()> {
-    let moves =
-        |path: &Path| path.extension().is_some_and(|found| MOVES.iter().any(|own| found.eq_ignore_ascii_case(own)));
-    if machine && !moves(path) && Format::of(path).is_none() {
+    if machine && !is_moves(path) && Format::of(path).is_none() {
         return Err(miette!(
             help = format!("name it {}", path.with_extension("csv").display()),
             "{}: the output is a .csv, .json, .jsonl or .yaml file with what the servos take, or .bvh, .glb, .gltf for pictures",

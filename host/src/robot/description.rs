@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
 /// Followers of followers: at most so many in a row.
-const LONGEST: usize = 32;
+pub(super) const LONGEST: usize = 32;
 
 /// How a joint moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,6 +48,8 @@ pub struct RobotJoint {
     pub base: String,
     /// The link that it moves.
     pub child: String,
+    /// Centre of mass of that link, in its frame, m, where it is given.
+    pub centre: Option<Vector3<f64>>,
     /// The joint that moves the link on which this one sits; none on the root link.
     pub parent: Option<usize>,
     /// Its frame in that joint's.
@@ -123,26 +125,18 @@ impl Robot {
     /// Forward kinematics: the frame of the link that each joint moves, in the root link's. `value` gives a joint's angle, rad, or length,
     /// m. Followers are not followed: see [`followed`](Self::followed).
     pub fn placed(&self, value: &dyn Fn(usize) -> f64) -> Vec<Isometry3<f64>> {
-        let mut frames: Vec<Option<Isometry3<f64>>> = vec![None; self.joints.len()];
-        for joint in 0..self.joints.len() {
-            // Outwards from the nearest joint whose frame is known.
-            let open: Vec<usize> = self.chain(joint).take_while(|at| frames[*at].is_none()).collect();
-            for at in open.into_iter().rev() {
-                let carrier = self.joints[at].parent.and_then(|parent| frames[parent]);
-                let moved = self.joints[at].moved(value(at));
-                frames[at] = Some(carrier.unwrap_or_else(Isometry3::identity) * self.joints[at].origin * moved);
-            }
-        }
-        frames.into_iter().flatten().collect()
+        self.placed_along(&self.depth_first(), value)
     }
 
-    /// The frame of every link in the root link's: the root link itself, then the link that each joint moves, in the joints' order.
-    /// `values` as [`placed`](Self::placed) takes them; joints beyond them are at 0.
-    pub fn link_frames(&self, values: &[f64]) -> Vec<(String, Isometry3<f64>)> {
-        let root = self.root().unwrap_or_else(|| "root".to_owned());
-        let frames = self.placed(&|at| values.get(at).copied().unwrap_or(0.0));
-        let moved = self.joints.iter().zip(frames).map(|(joint, frame)| (joint.child.clone(), frame));
-        std::iter::once((root, Isometry3::identity())).chain(moved).collect()
+    /// The same in an order that is known: [`depth_first`](Self::depth_first).
+    pub(super) fn placed_along(&self, order: &[usize], value: &dyn Fn(usize) -> f64) -> Vec<Isometry3<f64>> {
+        let mut frames = vec![Isometry3::identity(); self.joints.len()];
+        for &at in order {
+            let joint = &self.joints[at];
+            let own = joint.origin * joint.moved(value(at));
+            frames[at] = joint.parent.map_or(own, |parent| frames[parent] * own);
+        }
+        frames
     }
 
     /// The value of every joint: `own` of those that lead, `multiplier x + offset` of those that follow one, also by way of others.

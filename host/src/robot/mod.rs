@@ -7,6 +7,8 @@
 //! | `mjcf` | the same from an MJCF (MuJoCo) |
 //! | `servos` | [`ServoTable`]: ids, units, zeros, bounds of servos |
 //! | `machine` | [`Machine`]: a robot as packs hold it: rig, limits, servos |
+//! | `packed` | the robot of a pack as a [`Robot`] |
+//! | `retarget` | a person's motion on a robot, within its limits |
 //! | `motion` | a motion in the numbers of a file -> coordinates -> what the servos take |
 //! | `error` | [`RobotError`]: place, what was found, what to do |
 
@@ -15,6 +17,8 @@ mod error;
 mod machine;
 mod mjcf;
 mod motion;
+mod packed;
+pub mod retarget;
 mod servos;
 mod urdf;
 

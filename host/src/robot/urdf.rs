@@ -59,6 +59,7 @@ impl Robot {
         }
         let elements = |name: &'static str| root.children().filter(move |node| node.has_tag_name(name));
         let links: HashSet<&str> = elements("link").filter_map(|node| node.attribute("name")).collect();
+        let centres: HashMap<&str, Vector3<f64>> = elements("link").filter_map(centre).collect();
         let mut lines: HashMap<String, u32> = HashMap::new();
         let mut joints: Vec<(RobotJoint, [&str; 2])> = Vec::new();
         for node in elements("joint") {
@@ -84,7 +85,7 @@ impl Robot {
                 }
                 *end = link;
             }
-            joints.push((joint, ends));
+            joints.push((RobotJoint { centre: centres.get(ends[1]).copied(), ..joint }, ends));
         }
         if joints.is_empty() {
             return Err(RobotError::new("<robot>", "found no joint, expected at least one", "is this the whole file?"));
@@ -137,6 +138,14 @@ fn is_xacro(namespace: &str) -> bool {
 
 fn child<'a, 'b>(node: Node<'a, 'b>, name: &str) -> Option<Node<'a, 'b>> {
     node.children().find(|node| node.has_tag_name(name))
+}
+
+/// Name of a link and its centre of mass. One that is not given, or not in numbers, moves nothing.
+fn centre<'a>(link: Node<'a, '_>) -> Option<(&'a str, Vector3<f64>)> {
+    let at = child(child(link, "inertial")?, "origin").and_then(|origin| origin.attribute("xyz")).unwrap_or("0 0 0");
+    let at: Vec<f64> = at.split_whitespace().map(|x| x.parse().ok()).collect::<Option<_>>()?;
+    let at = <[f64; 3]>::try_from(at).ok().filter(|at| at.iter().all(|x| x.abs() < 1e6))?;
+    Some((link.attribute("name")?, at.into()))
 }
 
 /// A joint but for its place in the tree.
@@ -235,6 +244,7 @@ fn read(node: Node, line: u32) -> Result<RobotJoint, RobotError> {
         kind: node.attribute("type").unwrap_or_default().to_owned(),
         base: link("parent"),
         child: link("child"),
+        centre: None,
         parent: None,
         origin: Isometry3::from_parts(
             Translation3::from(place_of),

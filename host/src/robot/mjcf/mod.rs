@@ -197,6 +197,8 @@ impl Found {
                 continue;
             }
             let last = movable.len();
+            let centre = source.children(body.element, "inertial").first().copied();
+            let centre = centre.and_then(|at| source.exactly::<3>(at, "pos").ok().flatten()).map(Vector3::from);
             let shift = movable.last().map(|axis| axis.place).filter(|place| *place != Vector3::zeros());
             let fixed = |base: String, name: String, origin, carrier| RobotJoint {
                 name,
@@ -205,6 +207,7 @@ impl Found {
                 kind: "fixed".to_owned(),
                 base,
                 child: body.name.clone(),
+                centre,
                 parent: carrier,
                 origin,
                 axis: Vector3::x(),
@@ -239,6 +242,7 @@ impl Found {
                     upper: axis.bounds.map(|[_, upper]| upper),
                     line: source.at(axis.element).line,
                     child: child.clone(),
+                    centre: centre.filter(|_| ends),
                     notes: axis
                         .notes
                         .into_iter()
