@@ -159,8 +159,10 @@ fn print(summary: &Summary) {
         "degrees off", "median", "95 %", "reach: med.", "reach: 95 %", "at zero"
     );
     for limb in &report.limbs {
+        let length =
+            limb.length_p95.map_or(String::new(), |off| format!("   length off by {:.0} % (95 %)", 100.0 * off));
         println!(
-            "{:<14} {:>8.2} {:>8.2} {:>11.2} {:>11.2} {:>8.1}",
+            "{:<14} {:>8.2} {:>8.2} {:>11.2} {:>11.2} {:>8.1}{length}",
             limb.limb, limb.median, limb.p95, limb.reachable_median, limb.reachable_p95, limb.zero_median
         );
     }

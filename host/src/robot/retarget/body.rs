@@ -183,7 +183,14 @@ impl<'r> Body<'r> {
             Arrow::Along(joint, _) => (chain(joint), Vec::new()),
             Arrow::Between(from, to, _) => (chain(to.joint), chain(from.joint)),
         };
-        let both = outer.iter().map(|at| (*at, if inner.contains(at) { 0 } else { 1 }));
+        // A hinge does not move its own place.
+        let turns = |at: usize| self.robot.joints[at].motion != Motion::Prismatic;
+        let still = match arrow {
+            Arrow::Between(_, to, _) => to.joint.filter(|at| turns(*at) && !inner.contains(at)),
+            Arrow::Along(..) => None,
+        };
+        let both =
+            outer.iter().filter(|at| Some(**at) != still).map(|at| (*at, if inner.contains(at) { 0 } else { 1 }));
         let own = inner.iter().filter(|at| !outer.contains(at)).map(|at| (*at, -1));
         both.chain(own).filter(|(at, _)| self.driven[*at].variable.is_some()).collect()
     }

@@ -18,6 +18,8 @@ pub struct LimbEntry {
     pub to: Option<String>,
     /// Its direction in the root link's axes, all values zero; instead of `to`.
     pub bone: Option<Vector3<f64>>,
+    /// Of an arm or a leg as a whole: its length where the person's is stretched, m; else that of the chain.
+    pub length: Option<f64>,
     /// How much its error counts: 1 unless given, 0.3 of feet.
     pub weight: f64,
 }
@@ -36,7 +38,7 @@ pub struct RetargetMap {
 }
 
 const KEYS: [&str; 4] = ["forward", "up", "limbs", "hold"];
-const ENTRY: [&str; 4] = ["from", "to", "bone", "weight"];
+const ENTRY: [&str; 5] = ["from", "to", "bone", "length", "weight"];
 /// Weight of a foot: a leg that is nearly stretched would turn out at the knee for it.
 const FEET: f64 = 0.3;
 const SAMPLE: &str =
@@ -144,6 +146,7 @@ fn entry(name: &str, value: &Value) -> Result<LimbEntry, RobotError> {
         from: String::new(),
         to: None,
         bone: None,
+        length: None,
         weight: if matches!(limb, Limb::LFoot | Limb::RFoot) { FEET } else { 1.0 },
     };
     match value {
@@ -164,6 +167,11 @@ fn entry(name: &str, value: &Value) -> Result<LimbEntry, RobotError> {
             if let Some(weight) = table.get("weight") {
                 let found = number(weight).filter(|weight| (0.0..=1e3).contains(weight));
                 entry.weight = found.ok_or_else(|| refuse(", weight", weight, "a number from 0 to 1000"))?;
+            }
+            if let Some(length) = table.get("length") {
+                let found = number(length).filter(|length| *length > 0.0 && limb.reaches());
+                let expected = "a number above 0, m, and only of arms and legs as a whole";
+                entry.length = Some(found.ok_or_else(|| refuse(", length", length, expected))?);
             }
             if let Some(bone) = table.get("bone") {
                 let list = bone.as_array().map(|list| list.iter().map(number).collect::<Option<Vec<f64>>>());

@@ -6,7 +6,7 @@
 //! 1. One frame from several starts, and outwards from there, frame by frame; the best whole path stays. So from the first frame, and from
 //!    those where the path is worst.
 //! 2. Once back and once forth, every frame between its neighbours: no flip where a direction says nothing.
-//! 3. Speed limits on the whole path ([`speed`]). Limits of position hold throughout.
+//! 3. Where a joint would be too quick, the same within reach of the neighbours. Limits of position hold throughout.
 //!
 //! | file | holds |
 //! |---|---|
@@ -14,9 +14,9 @@
 //! | `map` | [`RetargetMap`]: which parts of the robot are which limbs |
 //! | `suggest` | [`suggest`]: a map from names and geometry |
 //! | `body` | variables, bounds, followers; arrows and how they move |
-//! | `path` | poses of all frames: from several frames outwards, then between neighbours |
+//! | `path` | poses of all frames: from several frames outwards, then between neighbours, within speed limits |
 //! | `solve` | damped least squares within a box |
-//! | `speed` | a path within speed limits |
+//! | `speed` | one joint's path within its speed limit |
 //! | `report` | [`Report`]: errors of limbs, shares of limits |
 //! | `cannot` | why a limb is off |
 //! | `table` | the values as [`Moves`](crate::moves::Moves) |
@@ -40,7 +40,7 @@ use body::{Arrow, Body, Point};
 pub use limb::Limb;
 use limb::Person;
 pub use map::{LimbEntry, RetargetMap};
-use path::{STILL, first_pass, sweep};
+use path::Course;
 pub use report::{AtLimit, LimbReport, Quickest, Report};
 use solve::{Solver, Term};
 pub use suggest::suggest;
@@ -97,21 +97,20 @@ pub fn retarget(robot: &Robot, map: &RetargetMap, clip: &Clip, joints: &JointMap
         ));
     }
     let zero: Vec<f64> = body.variables.iter().map(|variable| 0f64.clamp(variable.lower, variable.upper)).collect();
-    let weight = (STILL / clip.frame_time).powi(2);
-    let mut path = first_pass(&solver, &targets, &zero, weight);
-    for back in [true, false] {
-        sweep(&solver, &targets, &zero, weight, &mut path, back);
-    }
-    let reachable = path.clone();
-    let mut hurried = Vec::new();
-    for (at, variable) in body.variables.iter().enumerate() {
-        let mut one: Vec<f64> = path.iter().map(|values| values[at]).collect();
-        let moved = speed::keep(&mut one, variable.velocity * clip.frame_time);
-        if moved > 0 {
-            hurried.push((variable.joint, moved));
+    let course = Course { solver: &solver, targets: &targets, zero: &zero, frame_time: clip.frame_time };
+    let reachable = course.free();
+    let most: Vec<f64> = body
+        .variables
+        .iter()
+        .map(|variable| speed::a_frame(variable.velocity * clip.frame_time, 2.0 / STEPS))
+        .collect();
+    let quick = |at: &usize| reachable.windows(2).any(|pair| (pair[1][*at] - pair[0][*at]).abs() > most[*at]);
+    let hurried: Vec<usize> = (0..most.len()).filter(quick).collect();
+    let mut path = if hurried.is_empty() { reachable.clone() } else { course.limited(&reachable, &most) };
+    for values in &mut path {
+        for (value, variable) in values.iter_mut().zip(&body.variables) {
+            *value = ((*value * STEPS).round() / STEPS).clamp(variable.lower, variable.upper);
         }
-        let kept = |value: f64| ((value * STEPS).round() / STEPS).clamp(variable.lower, variable.upper);
-        path.iter_mut().zip(one).for_each(|(values, value)| values[at] = kept(value));
     }
     let paths = report::Paths { zero: &zero, reachable: &reachable, played: &path };
     let mut report = report::make(&solver, &aims, &targets, &paths, &hurried, clip.frame_time);
@@ -171,7 +170,7 @@ fn aims(body: &Body, map: &RetargetMap) -> Result<(Vec<Aim>, Vec<Term>), RobotEr
                 _ => add(fixed(map.forward), false, entry.weight),
             },
             (Some(to), None) => {
-                let reach = entry.limb.reaches().then(|| length(robot, from, to));
+                let reach = entry.limb.reaches().then(|| entry.length.unwrap_or_else(|| length(robot, from, to)));
                 let far = way(Arrow::Between(point(from), point(to), Some(1.0)));
                 if from == to || (far < SHORTEST && reach.is_none_or(|reach| reach < SHORTEST)) {
                     let what = format!(

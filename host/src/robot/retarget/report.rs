@@ -25,6 +25,9 @@ pub struct LimbReport {
     pub zero_median: f64,
     /// 95th percentile of the same.
     pub zero_p95: f64,
+    /// Of arms and legs as a whole: 95th percentile of how far the distance of their ends is off, as a share of the stretched limb.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub length_p95: Option<f64>,
 }
 
 /// A joint at a limit.
@@ -83,29 +86,30 @@ pub(super) struct Paths<'p> {
     pub played: &'p [Vec<f64>],
 }
 
-/// `hurried` are joints that were too quick, and in how many frames they are elsewhere for it.
+/// `hurried` are variables that would be too quick.
 pub(super) fn make(
     solver: &Solver,
     aims: &[Aim],
     targets: &Targets,
     paths: &Paths,
-    hurried: &[(usize, usize)],
+    hurried: &[usize],
     frame_time: f64,
 ) -> Report {
     let (body, robot, path) = (solver.body, solver.body.robot, paths.played);
-    let errors = |values: &dyn Fn(usize) -> Vec<f64>| {
+    let errors = |values: &dyn Fn(usize) -> Vec<f64>, measure: fn(&Vector3<f64>, &Vector3<f64>) -> f64| {
         let mut all: Vec<Vec<Option<f64>>> = vec![Vec::new(); aims.len()];
         for (frame, targets) in targets.iter().enumerate() {
             let frames = body.placed(&values(frame));
             for ((all, term), target) in all.iter_mut().zip(&solver.terms).zip(targets) {
-                all.push(target.map(|target| angle(&body.arrow(&frames, term.arrow), &target)));
+                all.push(target.map(|target| measure(&body.arrow(&frames, term.arrow), &target)));
             }
         }
         all
     };
-    let played = errors(&|frame| path[frame].clone());
-    let could = errors(&|frame| paths.reachable[frame].clone());
-    let still = errors(&|_| paths.zero.to_vec());
+    let played = errors(&|frame| path[frame].clone(), angle);
+    let could = errors(&|frame| paths.reachable[frame].clone(), angle);
+    let still = errors(&|_| paths.zero.to_vec(), angle);
+    let longer = errors(&|frame| path[frame].clone(), |a, b| (a.norm() - b.norm()).abs());
     let (mut notes, mut cannot, mut limbs) = (Vec::new(), Vec::new(), Vec::new());
     for (at, aim) in aims.iter().enumerate() {
         if played[at].iter().all(Option::is_none) {
@@ -121,12 +125,17 @@ pub(super) fn make(
             reachable_p95: share(&could[at], 0.95),
             zero_median: share(&still[at], 0.5),
             zero_p95: share(&still[at], 0.95),
+            length_p95: aim.limb.reaches().then(|| share(&longer[at], 0.95)),
         });
     }
     let part = |count: usize| count as f64 / path.len().max(1) as f64;
-    for (joint, count) in hurried {
-        let what = "it would have to be quicker than its speed limit; it sets out early and arrives late";
-        cannot.push(format!("{}: {what} ({:.0} % of the frames)", robot.joints[*joint].name, 100.0 * part(*count)));
+    let moved = |at: usize| {
+        let apart = path.iter().zip(paths.reachable).filter(|(a, b)| (a[at] - b[at]).abs() > 1e-3).count();
+        format!("{} ({:.0} % of the frames)", robot.joints[body.variables[at].joint].name, 100.0 * part(apart))
+    };
+    if !hurried.is_empty() {
+        let names: Vec<String> = hurried.iter().map(|at| moved(*at)).collect();
+        cannot.push(format!("speed limits keep these from going where they should: {}", names.join(", ")));
     }
     let (mut at_limit, mut limits_exceeded) = (Vec::new(), followers_beyond(solver, path));
     let (mut speeds_exceeded, mut quickest): (usize, Option<Quickest>) = (0, None);

@@ -44,6 +44,11 @@ impl<'b> Solver<'b> {
         Self { body, terms, active, slot }
     }
 
+    /// Bounds of every variable.
+    pub fn bounds(&self) -> Vec<[f64; 2]> {
+        self.body.variables.iter().map(|variable| [variable.lower, variable.upper]).collect()
+    }
+
     /// Variables that move an arrow, those that are held left out.
     pub fn movers(&self, term: usize) -> Vec<usize> {
         let mut moving: Vec<usize> =
@@ -54,7 +59,8 @@ impl<'b> Solver<'b> {
         moving
     }
 
-    fn cost(&self, values: &[f64], targets: &[Option<Vector3<f64>>], pulls: &[Pull]) -> f64 {
+    /// Sum of squares: of arrows' errors, and of what pulls.
+    pub fn cost(&self, values: &[f64], targets: &[Option<Vector3<f64>>], pulls: &[Pull]) -> f64 {
         let frames = self.body.placed(values);
         let arrows = self.terms.iter().zip(targets).filter_map(|(term, target)| {
             Some(term.weight * (self.body.arrow(&frames, term.arrow) - (*target)?).norm_squared())
@@ -65,12 +71,17 @@ impl<'b> Solver<'b> {
         arrows.sum::<f64>() + pulled.sum::<f64>()
     }
 
-    /// Moves the values to a least sum of squares near them. Gives that sum.
-    pub fn solve(&self, values: &mut [f64], targets: &[Option<Vector3<f64>>], pulls: &[Pull], most: usize) -> f64 {
+    /// Moves the values to a least sum of squares near them, in the box of bounds. Gives that sum.
+    pub fn solve(
+        &self,
+        values: &mut [f64],
+        targets: &[Option<Vector3<f64>>],
+        pulls: &[Pull],
+        within: &[[f64; 2]],
+        most: usize,
+    ) -> f64 {
         let n = self.active.len();
-        let bounds = |place: usize| {
-            (self.body.variables[self.active[place]].lower, self.body.variables[self.active[place]].upper)
-        };
+        let bounds = |place: usize| within[self.active[place]].into();
         let mut cost = self.cost(values, targets, pulls);
         let mut damping: f64 = 1e-3;
         let mut tried = values.to_vec();
@@ -98,7 +109,7 @@ impl<'b> Solver<'b> {
                 }
             }
             for place in 0..n {
-                let (value, (lower, upper)) = (values[self.active[place]], bounds(place));
+                let (value, (lower, upper)): (f64, (f64, f64)) = (values[self.active[place]], bounds(place));
                 if (value <= lower && slope[place] > 0.0) || (value >= upper && slope[place] < 0.0) {
                     (0..n).for_each(|other| (square[place * n + other], square[other * n + place]) = (0.0, 0.0));
                     (square[place * n + place], slope[place]) = (1.0, 0.0);
@@ -119,7 +130,7 @@ impl<'b> Solver<'b> {
                 tried.copy_from_slice(values);
                 largest = 0.0;
                 for (place, at) in self.active.iter().enumerate() {
-                    let (lower, upper) = bounds(place);
+                    let (lower, upper): (f64, f64) = bounds(place);
                     tried[*at] = (values[*at] - step[place].clamp(-0.5, 0.5)).clamp(lower, upper);
                     largest = largest.max((tried[*at] - values[*at]).abs());
                 }
