@@ -6,7 +6,8 @@ use nalgebra::{Isometry3, Quaternion, UnitQuaternion, Vector3};
 use super::{Machine, Motion, Robot, RobotJoint};
 
 impl Robot {
-    /// The robot of a pack: joints with bounds and speeds, poses among them. What does not move by itself stands still.
+    /// The robot of a pack: joints with bounds and speeds, poses among them. A pack has no links that stand
+    /// still, and followers stand still in it.
     pub fn of_machine(machine: &Machine) -> Self {
         let joints = &machine.rig.skeleton.joints;
         let limits = machine.limits.joints.iter();
@@ -39,14 +40,7 @@ impl Robot {
                 notes: Vec::new(),
             }
         });
-        let joints: Vec<RobotJoint> = moved.collect();
-        let still: Vec<&str> =
-            joints.iter().filter(|joint| joint.motion == Motion::Fixed).map(|joint| joint.name.as_str()).collect();
-        let mut notes = Vec::new();
-        if !still.is_empty() {
-            notes.push(format!("a pack does not say how followers move: {} stand still", still.join(", ")));
-        }
-        Self { name: machine.name.clone(), joints, notes }
+        Self { name: machine.name.clone(), joints: moved.collect(), notes: Vec::new() }
     }
 
     /// Keeps a pack's bounds and speeds beside the description's own, the tighter of the two. A note says which joints the pack alone has.

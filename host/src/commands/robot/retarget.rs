@@ -99,6 +99,9 @@ pub fn run(args: &Args) -> miette::Result<()> {
         return Ok(());
     };
     let mut assumed = Vec::new();
+    if is_pack(&args.file) {
+        assumed.push("a pack has joints that lead, and no others: followers stand still".to_owned());
+    }
     let (text, from) = match &args.map {
         Some(map) => (read(map)?, map),
         None => {
@@ -121,7 +124,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
         )
     })?;
     let place = |error: RobotError| {
-        let of_robot = ["line", "joint"].iter().any(|word| error.place.starts_with(word));
+        let of_robot = ["line", "joint", "the robot"].iter().any(|word| error.place.starts_with(word));
         error.in_file(if of_robot { &args.file } else { from })
     };
     let bar = spinner();

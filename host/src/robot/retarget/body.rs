@@ -2,6 +2,7 @@
 
 use nalgebra::{Isometry3, Vector3};
 
+use crate::rig::MAX_JOINTS;
 use crate::robot::description::LONGEST;
 use crate::robot::{Motion, Robot, RobotError, RobotJoint};
 
@@ -39,18 +40,11 @@ impl Variable {
     }
 }
 
-/// A point of a link: in the frame of the joint that moves it, or of the root link.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Point {
-    pub joint: Option<usize>,
-    pub local: Vector3<f64>,
-}
-
 /// Something that points.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Arrow {
-    /// From a point to a point, over a length, m, where that counts.
-    Between(Point, Point, Option<f64>),
+    /// From the origin of one joint's link to that of another (none: the root link), over a length, m, where that counts.
+    Between(Option<usize>, Option<usize>, Option<f64>),
     /// Fixed in the link of a joint, in its frame.
     Along(Option<usize>, Vector3<f64>),
 }
@@ -66,8 +60,9 @@ pub(super) struct Body<'r> {
 }
 
 impl<'r> Body<'r> {
-    /// Refuses rings of followers, and bounds that leave nothing.
+    /// Refuses rings of followers, bounds that leave nothing, and more joints than any robot has.
     pub fn new(robot: &'r Robot, hold: &[(String, f64)]) -> Result<Self, RobotError> {
+        small(robot)?;
         let index: std::collections::HashMap<&str, usize> =
             robot.joints.iter().zip(0..).map(|(joint, at)| (joint.name.as_str(), at)).collect();
         let place = |at: usize| {
@@ -156,8 +151,8 @@ impl<'r> Body<'r> {
         self.robot.placed_along(&self.order, &|at| self.joint_value(at, values))
     }
 
-    fn place(frames: &[Isometry3<f64>], point: Point) -> Vector3<f64> {
-        point.joint.map_or(point.local, |at| (frames[at] * nalgebra::Point3::from(point.local)).coords)
+    fn place(frames: &[Isometry3<f64>], joint: Option<usize>) -> Vector3<f64> {
+        joint.map_or_else(Vector3::zeros, |at| frames[at].translation.vector)
     }
 
     /// Where an arrow points: length one, or its share of the length that counts.
@@ -181,17 +176,18 @@ impl<'r> Body<'r> {
         let chain = |joint: Option<usize>| joint.map_or(Vec::new(), |at| self.robot.chain(at).collect::<Vec<_>>());
         let (outer, inner) = match arrow {
             Arrow::Along(joint, _) => (chain(joint), Vec::new()),
-            Arrow::Between(from, to, _) => (chain(to.joint), chain(from.joint)),
+            Arrow::Between(from, to, _) => (chain(to), chain(from)),
         };
         // A hinge does not move its own place.
-        let turns = |at: usize| self.robot.joints[at].motion != Motion::Prismatic;
-        let still = match arrow {
-            Arrow::Between(_, to, _) => to.joint.filter(|at| turns(*at) && !inner.contains(at)),
-            Arrow::Along(..) => None,
+        let slides = |at: &usize| self.robot.joints[*at].motion == Motion::Prismatic;
+        let ends = match arrow {
+            Arrow::Between(from, to, _) => [from, to],
+            Arrow::Along(..) => [None; 2],
         };
-        let both =
-            outer.iter().filter(|at| Some(**at) != still).map(|at| (*at, if inner.contains(at) { 0 } else { 1 }));
-        let own = inner.iter().filter(|at| !outer.contains(at)).map(|at| (*at, -1));
+        let moves = |at: &usize| slides(at) || !ends.contains(&Some(*at));
+        let both = outer.iter().filter(|at| inner.contains(at) || moves(at));
+        let both = both.map(|at| (*at, if inner.contains(at) { 0 } else { 1 }));
+        let own = inner.iter().filter(|at| !outer.contains(at) && moves(at)).map(|at| (*at, -1));
         both.chain(own).filter(|(at, _)| self.driven[*at].variable.is_some()).collect()
     }
 
@@ -239,6 +235,23 @@ impl<'r> Body<'r> {
         let driven = self.driven[joint];
         driven.variable.map_or(0.0, |variable| driven.multiplier * values[variable]) + driven.offset
     }
+}
+
+/// Joints at most, fixed ones too, and joints at most that lead: the work grows with their squares and cubes.
+const MOST: [usize; 2] = [2000, MAX_JOINTS];
+
+/// Refuses what has more joints than any robot.
+pub(super) fn small(robot: &Robot) -> Result<(), RobotError> {
+    let leads =
+        |joint: &&RobotJoint| !matches!(joint.motion, Motion::Fixed | Motion::Other(_)) && joint.mimic.is_none();
+    let found = [robot.joints.len(), robot.joints.iter().filter(leads).count()];
+    for ((found, most), what) in found.into_iter().zip(MOST).zip(["joints", "joints that lead"]) {
+        if found > most {
+            let what = format!("found {found} {what}, at most {most} are supported");
+            return Err(RobotError::new("the robot", what, "take fingers and sensors out of the description"));
+        }
+    }
+    Ok(())
 }
 
 /// Takes a follower's bounds and speed into its leader's.

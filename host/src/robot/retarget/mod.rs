@@ -36,7 +36,7 @@ use nalgebra::{Isometry3, Matrix3, Vector3};
 
 use super::{Motion, Robot, RobotError};
 use crate::clip::{Clip, JointMap};
-use body::{Arrow, Body, Point};
+use body::{Arrow, Body};
 pub use limb::Limb;
 use limb::Person;
 pub use map::{LimbEntry, RetargetMap};
@@ -144,7 +144,6 @@ fn aims(body: &Body, map: &RetargetMap) -> Result<(Vec<Aim>, Vec<Term>), RobotEr
         };
         let from = find(&entry.from)?;
         let to = entry.to.as_deref().map(find).transpose()?;
-        let point = |joint| Point { joint, local: Vector3::zeros() };
         let fixed = |way: Vector3<f64>| Arrow::Along(from, from.map_or(way, |at| frames[at].rotation.inverse() * way));
         let mut add = |arrow: Arrow, second: bool, weight: f64| {
             let name = entry.limb.name().to_owned();
@@ -171,7 +170,7 @@ fn aims(body: &Body, map: &RetargetMap) -> Result<(Vec<Aim>, Vec<Term>), RobotEr
             },
             (Some(to), None) => {
                 let reach = entry.limb.reaches().then(|| entry.length.unwrap_or_else(|| length(robot, from, to)));
-                let far = way(Arrow::Between(point(from), point(to), Some(1.0)));
+                let far = way(Arrow::Between(from, to, Some(1.0)));
                 if from == to || (far < SHORTEST && reach.is_none_or(|reach| reach < SHORTEST)) {
                     let what = format!(
                         "'{}' and '{}' are {far:.4} m apart, expected {SHORTEST} m or more",
@@ -182,7 +181,7 @@ fn aims(body: &Body, map: &RetargetMap) -> Result<(Vec<Aim>, Vec<Term>), RobotEr
                 }
                 match reach.is_none().then(|| in_plane(robot, &frames, from, to)).flatten() {
                     Some(way) => add(fixed(way), false, entry.weight),
-                    None => add(Arrow::Between(point(from), point(to), reach), false, entry.weight),
+                    None => add(Arrow::Between(from, to, reach), false, entry.weight),
                 }
             }
             (None, Some(bone)) => add(fixed(bone), false, entry.weight),

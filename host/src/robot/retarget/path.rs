@@ -168,6 +168,11 @@ impl Course<'_> {
                 (*lower, *upper) = (lower.max(value - most), upper.min(value + most));
             }
         }
+        // Between neighbours that are as far apart as may be, rounding may leave nothing.
+        for [lower, upper] in within.iter_mut().filter(|[lower, upper]| lower > upper) {
+            *lower = 0.5 * (*lower + *upper);
+            *upper = *lower;
+        }
         within
     }
 }

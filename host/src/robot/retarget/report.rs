@@ -129,13 +129,9 @@ pub(super) fn make(
         });
     }
     let part = |count: usize| count as f64 / path.len().max(1) as f64;
-    let moved = |at: usize| {
-        let apart = path.iter().zip(paths.reachable).filter(|(a, b)| (a[at] - b[at]).abs() > 1e-3).count();
-        format!("{} ({:.0} % of the frames)", robot.joints[body.variables[at].joint].name, 100.0 * part(apart))
-    };
     if !hurried.is_empty() {
-        let names: Vec<String> = hurried.iter().map(|at| moved(*at)).collect();
-        cannot.push(format!("speed limits keep these from going where they should: {}", names.join(", ")));
+        let names: Vec<&str> = hurried.iter().map(|at| robot.joints[body.variables[*at].joint].name.as_str()).collect();
+        cannot.push(format!("to follow without speed limits, these would have to be quicker: {}", names.join(", ")));
     }
     let (mut at_limit, mut limits_exceeded) = (Vec::new(), followers_beyond(solver, path));
     let (mut speeds_exceeded, mut quickest): (usize, Option<Quickest>) = (0, None);

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use nalgebra::{Isometry3, Vector3};
 
 use super::Limb;
+use super::body::small;
 use crate::robot::{Motion, Robot, RobotError};
 
 /// Points nearer than this to each other show no direction, m.
@@ -36,6 +37,7 @@ enum Side {
 ///
 /// Refused where no limb is found.
 pub fn suggest(robot: &Robot) -> Result<String, RobotError> {
+    small(robot)?;
     let frames = robot.frames();
     let mut groups: Vec<(Side, Part, Vec<usize>)> = Vec::new();
     let mut depth: Vec<(usize, usize)> = (0..robot.joints.len()).map(|at| (robot.chain(at).count(), at)).collect();
@@ -157,14 +159,15 @@ fn axis(robot: &Robot, frames: &[Isometry3<f64>], at: usize) -> Vector3<f64> {
     frames[at].rotation * robot.joints[at].axis
 }
 
-/// Two joints that a limb is between: hinges across it where there are any, the last of the inner ones and the first of the outer ones.
+/// Two joints that a limb is between: hinges across it where there are any, the last of the inner ones and the first of the outer ones. What
+/// lies beyond a joint that twists the limb may stand off its axis, and goes round with it.
 fn between(robot: &Robot, frames: &[Isometry3<f64>], inner: &[usize], outer: &[usize]) -> Option<(usize, usize)> {
     let carried = |at: &usize| inner.iter().any(|on| robot.chain(*at).any(|carrier| carrier == *on));
     let outer: Vec<usize> = outer.iter().copied().filter(carried).collect();
     let start = place(frames, *inner.last()?);
     let far = |at: &&usize| (place(frames, **at) - start).norm() > SHORTEST;
     let across = |at: &&usize| axis(robot, frames, **at).dot(&(place(frames, **at) - start).normalize()).abs() < ALONG;
-    let to = *outer.iter().filter(far).find(across).or_else(|| outer.iter().rev().find(far))?;
+    let to = *outer.iter().filter(far).find(across).or_else(|| outer.iter().find(far))?;
     let end = place(frames, to);
     let way = |at: &usize| end - place(frames, *at);
     let own: Vec<usize> =
