@@ -59,7 +59,7 @@ cat > "$work/list" <<END
 Unitree G1|unitreerobotics/unitree_mujoco|c598f103acb87a5fd3de7c9037f4dab6aa7f232b|unitree_robots/g1/g1_29dof.xml||$walk $wave
 Fourier GR1|FFTAI/Wiki-GRx-Models|7d96c758f048fe1bf92b3258864d94771ae0c093|GRX/GR1/gr1t1/basic_urdf/gr1t1.urdf||$walk $wave
 Booster T1|BoosterRobotics/booster_gym|da396a06d6eed99e2de72d7749c48ee8748950f9|resources/T1/T1_serial.urdf||$walk $wave
-NAO|ros-naoqi/nao_robot|67476469a1371b00b17538eb6ea336367ece7d44|nao_description/urdf/naoV50_generated_urdf/nao.urdf||$walk $wave
+NAO|ros-naoqi/nao_robot|67476469a1371b00b17538eb6ea336367ece7d44|nao_description/urdf/naoV50_generated_urdf/nao.urdf||$walk $wave bandai2/wave-both-hands_active_001.bvh
 Open Duck Mini|apirrone/Open_Duck_Mini|bf2adfbb335016d66a57a09dc1164bd5aa3f1e09|mini_bdx/robots/open_duck_mini_v2/robot.urdf||$walk
 Reachy 2|pollen-robotics/reachy2_mujoco|96f6c1d3497e0bdb9638e2e5d5df09dff8da253c|reachy2_mujoco/description/original_urdf/reachy2.urdf||$walk $wave
 Reachy Mini|||mini.kin|mini|$walk $wave
@@ -82,11 +82,13 @@ while IFS='|' read -r name repository commit file map clips; do
     fi
     for clip in $clips; do
         "$kinesic" robot retarget "$robot" "$data/$clip" ${map:+--map "$work/$map.toml"} --out "$work/moves.csv" --json > "$work/report.json"
-        python3 - "$name" "$clip" "$work/report.json" <<'END'
+        python3 - "$name" "$clip" "$work/report.json" "$robot" "$work/moves.csv" <<'END'
+import csv
 import json
 import sys
+import xml.etree.ElementTree as tree
 
-name, clip, path = sys.argv[1:]
+name, clip, path, robot, moves = sys.argv[1:]
 report = json.load(open(path))
 limbs = {}
 for limb in report["limbs"]:
@@ -99,6 +101,20 @@ at = ", ".join(f"{x['joint']} {100 * x['share']:.0f} %" for x in report["at_limi
 quickest = report["quickest"]
 speed = f"{100 * quickest['share']:.0f} % ({quickest['joint']})" if quickest else "none given"
 beyond = report["limits_exceeded"] + report["speeds_exceeded"]
+# A URDF's limits once more, against what was written.
+if robot.endswith(".urdf"):
+    header, *rows = csv.reader(open(moves))
+    times, *columns = zip(*(map(float, row) for row in rows))
+    values = {name.rsplit("_", 1)[0]: column for name, column in zip(header[1:], columns)}
+    for joint in tree.parse(robot).getroot().findall("joint"):
+        limit, own = joint.find("limit"), values.get(joint.get("name"))
+        if limit is None or own is None:
+            continue
+        if joint.get("type") != "continuous":
+            beyond += sum(not float(limit.get("lower", 0)) <= x <= float(limit.get("upper", 0)) for x in own)
+        most = float(limit.get("velocity", 0)) or float("inf")
+        steps = zip(own, own[1:], times, times[1:])
+        beyond += sum(abs(b - a) > most * (u - t) for a, b, t, u in steps)
 print(f"| {name} | `{clip.split('/')[1][:-4]}`, {report['frames']} | {cells} | {at} | {speed} | {beyond} |")
 for line in report["cannot"]:
     print(f"{name}, {clip}: cannot: {line}", file=sys.stderr)

@@ -369,8 +369,9 @@ fn what_the_command_prints_is_said_in_both_ways() {
     let report = json(&done(at, "robot retarget r.urdf a.bvh --map map.toml --json"));
     let cannot = report["cannot"].to_string();
     assert!(cannot.contains("l_forearm: more than 10 degrees off in 100 % of the frames"), "{cannot}");
-    let late = run(at, &["robot", "retarget", "r.urdf", "a.bvh", "--out", "m.txt"]);
-    assert!(!late.status.success());
+    std::fs::write(at.join("m.csv"), "time_s,left_elbow_rad\n0,0\n0.1,0.1\n").unwrap();
+    let moves = run(at, &["robot", "retarget", "r.urdf", "m.csv"]);
+    assert!(String::from_utf8_lossy(&moves.stderr).contains("expected a person's"), "{moves:?}");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use kinesic_host::clip::{JointMap, UpAxis, read_with};
+use kinesic_host::clip::{JointMap, ReadError, UpAxis, read_with};
 use kinesic_host::robot::retarget::{Report, RetargetMap, retarget, suggest};
 use kinesic_host::robot::{Robot, RobotError};
 use kinesic_host::{files, plain};
@@ -112,7 +112,16 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let map = RetargetMap::parse(&text).map_err(|error| error.in_file(from))?;
     let reading = Reading { map: args.skeleton_map.clone(), up: args.up, ..Reading::default() };
     let options = reading.options()?;
-    let mut clip = read_with(path, &options).into_diagnostic()?;
+    let mut clip = match read_with(path, &options) {
+        Err(ReadError::Machine { .. }) => {
+            return Err(miette!(
+                help = "give a clip of a person, as in walk.bvh",
+                "{}: found a motion in the joints of a robot, expected a person's",
+                path.display()
+            ));
+        }
+        read => read.into_diagnostic()?,
+    };
     if let Some(fps) = args.fps {
         clip = clip.resample(fps).into_diagnostic().wrap_err_with(|| path.display().to_string())?;
     }
