@@ -275,6 +275,36 @@ fn what_is_no_robot_is_refused_soon() {
     says(&retarget(&long, &map, &clip, &joints).unwrap_err(), &["30000 joints", "at most 2000"]);
 }
 
+/// Every number of the description in turn is one that no robot has: refused, or moved within limits.
+#[test]
+fn odd_numbers_do_no_harm() {
+    let text = canted();
+    let clip = person(&Robot::parse(&text).unwrap(), 8);
+    let map = RetargetMap::parse(ARMS).unwrap();
+    let joints = JointMap::detect(&clip.skeleton).unwrap();
+    let number = |c: char| c.is_ascii_digit() || c == '.' || c == '-';
+    let starts: Vec<usize> = text.match_indices(number).map(|(at, _)| at).collect();
+    let (mut moved, mut refused) = (0, 0);
+    for at in starts.into_iter().filter(|at| !text[..*at].ends_with(number)) {
+        let end = at + text[at..].find(|c| !number(c)).unwrap();
+        for odd in ["1e300", "-1e300", "999999", "1e-300", "0", "inf", "-inf"] {
+            let Ok(robot) = Robot::parse(&format!("{}{odd}{}", &text[..at], &text[end..])) else {
+                refused += 1;
+                continue;
+            };
+            match retarget(&robot, &map, &clip, &joints) {
+                Err(_) => refused += 1,
+                Ok(done) => {
+                    moved += 1;
+                    assert!(done.values.iter().all(|value| value.is_finite()), "{odd} at {at}");
+                    assert_eq!((done.report.limits_exceeded, done.report.speeds_exceeded), (0, 0), "{odd} at {at}");
+                }
+            }
+        }
+    }
+    assert!(moved > 100 && refused > 100, "{moved} {refused}");
+}
+
 fn run(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(KINESIC).args(arguments).current_dir(folder).output().unwrap()
 }
