@@ -282,6 +282,39 @@ fn a_trajectory_of_ros_is_in_radians_whatever_the_servos_take() {
 }
 
 #[test]
+fn jerk_limits_of_a_table_are_kept_by_what_is_played_and_name_the_limiter() {
+    let table = TABLE.replace("acceleration = 9000\n", "acceleration = 9000\njerk = 180000\n");
+    let defaults = Defaults { jerk: Some(3000.0), ..Defaults::default() };
+    let machine = Machine::of_table(&ServoTable::parse(&table).unwrap(), 50.0, defaults).unwrap();
+    // The table's own, in the servo's unit, goes before the default.
+    let jerks: Vec<f32> = machine.limits.joints.iter().skip(1).map(|joint| joint.jerk[0]).collect();
+    assert_eq!(jerks, [3000.0, 3000.0, 3_141.592_8, 3000.0]);
+    let mut text = "t,pan_deg,tilt_deg,left_antenna_deg,right_antenna_deg\n".to_owned();
+    for at in 0..200 {
+        let jump = if at / 40 % 2 == 0 { -30 } else { 30 };
+        text += &format!("{},{jump},{},{jump},0\n", f64::from(at) / 50.0, at % 7);
+    }
+    let moves = moves::parse(text.as_bytes(), Path::new("m.csv"), &Options::default()).unwrap();
+    let file = PackFile::from_bytes(&machine.pack(None, &Default::default()).unwrap());
+    let pack = file.pack().unwrap();
+    let clip = machine.clip(&moves, None).unwrap();
+    let (limited, clamps) = kinesic_host::limit::play(&pack, &machine.rig, &clip).unwrap().unwrap();
+    assert!(clamps.clamped_frames > 20, "{clamps:?}");
+    for (at, jerk) in jerks.iter().enumerate() {
+        let way: Vec<f64> = (0..200).map(|frame| limited.coordinates(frame).unwrap()[at]).collect();
+        let most = way.windows(4).map(|w| (w[3] - 3.0 * w[2] + 3.0 * w[1] - w[0]).abs()).fold(0.0, f64::max);
+        let bound = f64::from(*jerk) / 50f64.powi(3);
+        assert!(most < 1.0001 * bound + 1e-6 && (at != 0 || most > 0.9 * bound), "{at}: {most} {bound}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("desk.kin"), file.bytes()).unwrap();
+    let text = kinesic(folder.path(), &["inspect", "desk.kin"]).unwrap();
+    assert!(text.contains("SmoothLimiter::<2>"), "{text}");
+    // The limiter without them refuses, and says which one has them.
+    assert_eq!(Limiter::<2>::load(&pack).unwrap_err(), kinesic::LoadError::Jerk);
+}
+
+#[test]
 fn sliders_and_turns_are_played_as_they_are() {
     let table =
         "[[servo]]\nname = \"lift\"\nunit = \"mm\"\nmin = 0\nmax = 200\n[[servo]]\nname = \"reel\"\nunit = \"deg\"\n";
