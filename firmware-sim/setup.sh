@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what `kinesic-firmware-sim check` and its tests need and do not find: emulators, a compiler for the targets where
-# no rustup target can be had, a C compiler. As root on Debian it installs the packages; otherwise it says what to install and fails.
+# no rustup target can be had, a C compiler, Node.js. As root on Debian it installs the packages; otherwise it says what to install and fails.
 set -euo pipefail
 
 wanted=()
@@ -8,6 +8,10 @@ command -v qemu-system-arm >/dev/null || wanted+=(qemu-system-arm)
 command -v qemu-system-riscv32 >/dev/null || wanted+=(qemu-system-misc)
 # For the example of the C interface.
 command -v arm-none-eabi-gcc >/dev/null || wanted+=(gcc-arm-none-eabi)
+
+# For the emulated RP2040, which is a package of npm.
+command -v node >/dev/null || wanted+=(nodejs)
+command -v npm >/dev/null || wanted+=(npm)
 
 # For the page of `kinesic view`.
 command -v chromium >/dev/null || wanted+=(chromium)

@@ -114,17 +114,27 @@ pub fn images(
     let settings = vec![("KINESIC_LAYOUT", folder.join("layout").into()), ("KINESIC_PACKS", folders.packs().into())];
     let what = format!("the images for {name}");
     let project = home().join("image");
-    BareMetal { what, project, folder, triple: &target.triple, flags, binaries, settings }.build(toolchain)
+    let programs: Vec<Program> = binaries.iter().map(|binary| Program::Bin(binary)).collect();
+    BareMetal { what, project, folder, triple: &target.triple, flags, programs: &programs, settings }.build(toolchain)
 }
 
-/// Builds the project that users copy, `docs/board`, and returns the image. Its own files say where memory is.
-pub fn board(folders: &Folders, name: &str, target: &Target, toolchain: &Toolchain) -> Result<PathBuf, BuildError> {
+/// Builds a program of the project that users copy, `docs/board`, and returns the image. Its own files say where memory is.
+pub fn board(
+    folders: &Folders,
+    name: &str,
+    target: &Target,
+    toolchain: &Toolchain,
+    program: Program<'_>,
+) -> Result<PathBuf, BuildError> {
     let flags = vec![format!("-Clinker={}", toolchain.linker.display()), "-Clinker-flavor=ld.lld".to_owned()];
     let (what, project) = (format!("docs/board for {name}"), home().join("../docs/board"));
-    let (folder, binaries) = (folders.target(name).join("board"), &["kinesic-board"][..]);
-    let built = BareMetal { what, project, folder, triple: &target.triple, flags, binaries, settings: Vec::new() }
+    let (folder, programs) = (folders.target(name).join("board"), &[program][..]);
+    let built = BareMetal { what, project, folder, triple: &target.triple, flags, programs, settings: Vec::new() }
         .build(toolchain)?;
-    Ok(built.join(binaries[0]))
+    Ok(match program {
+        Program::Bin(name) => built.join(name),
+        Program::Example(name) => built.join("examples").join(name),
+    })
 }
 
 /// Builds the static library for C (`c/`) for a target, and returns it.
@@ -132,7 +142,7 @@ pub fn c_library(folders: &Folders, name: &str, target: &Target, toolchain: &Too
     let (what, project, folder) =
         (format!("the C library for {name}"), home().join("../c"), folders.target(name).join("c"));
     let flags = vec![format!("-Ctarget-cpu={}", target.cpu)];
-    let built = BareMetal { what, project, folder, triple: &target.triple, flags, binaries: &[], settings: Vec::new() }
+    let built = BareMetal { what, project, folder, triple: &target.triple, flags, programs: &[], settings: Vec::new() }
         .build(toolchain)?;
     Ok(built.join("libkinesic_c.a"))
 }
@@ -141,7 +151,7 @@ pub fn c_library(folders: &Folders, name: &str, target: &Target, toolchain: &Too
 pub fn wasm(folders: &Folders, toolchain: &Toolchain) -> Result<PathBuf, BuildError> {
     let (what, project, folder) = ("the core for browsers".to_owned(), home().join("../wasm"), folders.target("wasm"));
     let flags = vec![format!("-Clinker={}", toolchain.linker.display()), "-Clinker-flavor=wasm-ld".to_owned()];
-    let built = BareMetal { what, project, folder, triple: WASM, flags, binaries: &[], settings: Vec::new() }
+    let built = BareMetal { what, project, folder, triple: WASM, flags, programs: &[], settings: Vec::new() }
         .build(toolchain)?;
     Ok(built.join("kinesic_wasm.wasm"))
 }
@@ -149,14 +159,23 @@ pub fn wasm(folders: &Folders, toolchain: &Toolchain) -> Result<PathBuf, BuildEr
 /// Target of the core for browsers.
 pub const WASM: &str = "wasm32-unknown-unknown";
 
-/// Binaries, or the library, of a crate without an operating system.
+/// A program of a crate.
+#[derive(Clone, Copy, Debug)]
+pub enum Program<'a> {
+    /// One of its binaries.
+    Bin(&'a str),
+    /// One of its examples.
+    Example(&'a str),
+}
+
+/// Programs, or the library, of a crate without an operating system.
 struct BareMetal<'a> {
     what: String,
     project: PathBuf,
     folder: PathBuf,
     triple: &'a str,
     flags: Vec<String>,
-    binaries: &'a [&'a str],
+    programs: &'a [Program<'a>],
     settings: Vec<(&'static str, OsString)>,
 }
 
@@ -168,7 +187,10 @@ impl BareMetal<'_> {
             .current_dir(&self.project)
             .args(["build", "--release", "--locked", "--quiet", "--target", self.triple, "--target-dir"])
             .arg(&self.folder)
-            .args(self.binaries.iter().flat_map(|binary| ["--bin", binary]))
+            .args(self.programs.iter().flat_map(|program| match program {
+                Program::Bin(name) => ["--bin", name],
+                Program::Example(name) => ["--example", name],
+            }))
             .args(toolchain.builds_core.then_some("-Zbuild-std=core"));
         self.settings.push(("RUSTC", toolchain.rustc.clone().into()));
         self.settings.push(("CARGO_ENCODED_RUSTFLAGS", self.flags.join("\x1f").into()));
@@ -193,8 +215,8 @@ pub fn plugin(folders: &Folders) -> Result<PathBuf, BuildError> {
     Ok(folder.join("release/libkinesic_qemu_plugin.so"))
 }
 
-fn run(mut command: Command, settings: Vec<(&str, OsString)>, what: &str) -> Result<(), BuildError> {
-    // What a surrounding `cargo run` or `cargo test` set is about its own build, and would make this one look changed.
+/// What a surrounding `cargo run` or `cargo test` set is about its own build, and would make another one look changed.
+fn clean(command: &mut Command) {
     let own = ["CARGO_HOME", "CARGO_HTTP", "CARGO_NET", "CARGO_REGISTR", "CARGO_TERM", "CARGO_SOURCE", "RUSTUP_HOME"];
     for (name, _) in std::env::vars_os() {
         let text = name.to_string_lossy();
@@ -203,6 +225,28 @@ fn run(mut command: Command, settings: Vec<(&str, OsString)>, what: &str) -> Res
             command.env_remove(&name);
         }
     }
+}
+
+/// A line of a page, as its reader types it, with the compiler that was found instead of rustup's target.
+pub fn shell(line: &str, folder: &Path, toolchain: &Toolchain) -> Command {
+    let mut command = Command::new("sh");
+    clean(&mut command);
+    // `exec`, so that the program can be ended.
+    command.args(["-c", &format!("exec {line}")]).current_dir(folder).env("RUSTC", &toolchain.rustc);
+    if let Some(folder) = toolchain.cargo.parent().filter(|folder| folder.is_absolute()) {
+        let path = std::env::var("PATH").unwrap_or_default();
+        command.env("PATH", format!("{}:{path}", folder.display()));
+    }
+    let linker = format!("-Clinker={}\x1f-Clinker-flavor=ld.lld", toolchain.linker.display());
+    command.env("CARGO_ENCODED_RUSTFLAGS", linker);
+    if toolchain.builds_core {
+        command.envs([("CARGO_UNSTABLE_BUILD_STD", "core"), ("RUSTC_BOOTSTRAP", "1")]);
+    }
+    command
+}
+
+fn run(mut command: Command, settings: Vec<(&str, OsString)>, what: &str) -> Result<(), BuildError> {
+    clean(&mut command);
     for (name, value) in settings {
         command.env(name, value);
     }

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::Command;
 
 use kinesic::{Pipeline, PipelineState, Pose, Translator, TranslatorState};
-use kinesic_firmware_sim::build::{self, Folders};
+use kinesic_firmware_sim::build::{self, Folders, Program};
 use kinesic_firmware_sim::data::Data;
 use kinesic_firmware_sim::toolchain;
 use kinesic_host::pack::PackFile;
@@ -42,7 +42,8 @@ fn the_board_prints_what_the_host_computes() {
     for (name, machine) in [("m4f", "netduinoplus2"), ("rv32imc", "virt")] {
         let target = &data.targets[name];
         let found = toolchain::find(&target.triple).unwrap();
-        let image = build::board(&Folders::new(), name, target, &found).unwrap_or_else(|error| panic!("{error}"));
+        let image = build::board(&Folders::new(), name, target, &found, Program::Bin("kinesic-board"))
+            .unwrap_or_else(|error| panic!("{error}"));
         let run = Command::new(&target.emulator)
             .args(["-machine", machine, "-nographic", "-monitor", "none", "-serial", "none", "-bios", "none"])
             .args(["-semihosting-config", "enable=on,target=native", "-kernel"])

@@ -139,8 +139,12 @@ fn squeezed(text: &str) -> String {
 
 /// Runs a page; returns how many commands ran, and how many messages were compared.
 fn run(page: &str) -> [usize; 2] {
+    run_in(&folder(), page)
+}
+
+/// The same in a folder that is still there afterwards.
+fn run_in(folder: &tempfile::TempDir, page: &str) -> [usize; 2] {
     let source = std::fs::read_to_string(repository().join(page)).unwrap();
-    let folder = folder();
     let (mut at, mut ran, mut compared) = (folder.path().to_owned(), 0, 0);
     for block in blocks(&source) {
         let place = format!("{page}, line {}", block.line);
@@ -186,10 +190,22 @@ fn the_readme_runs_as_written() {
 
 #[test]
 fn the_book_runs_as_written() {
-    let pages = ["tour", "your-clips", "your-skeleton", "model-size", "export", "view", "robot", "precision"];
+    let pages = ["tour", "your-clips", "your-skeleton", "model-size", "export", "view", "precision"];
     for page in pages {
         let [ran, _] = run(&format!("docs/{page}.md"));
         assert!(ran >= 2, "{page}: {ran} commands");
+    }
+}
+
+#[test]
+fn the_firmware_of_the_desk_robot_has_what_its_page_makes() {
+    let folder = folder();
+    let [ran, _] = run_in(&folder, "docs/robot.md");
+    assert!(ran >= 8, "{ran} commands");
+    for name in ["lively.kin", "move.csv"] {
+        let made = std::fs::read(folder.path().join(name)).unwrap();
+        let kept = std::fs::read(repository().join("docs/board/examples/desk").join(name)).unwrap();
+        assert!(made == kept, "docs/board/examples/desk/{name} is not what docs/robot.md makes: copy it from there");
     }
 }
 
