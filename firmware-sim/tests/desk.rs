@@ -7,6 +7,7 @@ use std::process::Stdio;
 
 use kinesic::{LimitState, Limiter, Pipeline, PipelineState, Servos, Translator, TranslatorState};
 use kinesic_firmware_sim::build::{self, Folders};
+use kinesic_firmware_sim::elf::Image;
 use kinesic_firmware_sim::toolchain::{self, Toolchain};
 use kinesic_host::moves::{self, Options};
 use kinesic_host::pack::PackFile;
@@ -127,6 +128,10 @@ fn a_robot_s_servo_numbers_are_the_host_s_on_a_cortex_m0_plus_and_on_a_cortex_m4
         }
         let triple = if line.contains("thumbv6m") { "thumbv6m-none-eabi" } else { "thumbv7em-none-eabihf" };
         let printed = output(&line, &folder, &toolchain::find(triple).unwrap());
+        if let Some(program) = line.split(' ').find(|word| word.starts_with("target/")) {
+            let image = Image::read(&folder.join(program)).unwrap();
+            println!("{triple}: flash {} B with the pack and the move, static RAM {} B", image.flash, image.ram);
+        }
         if ["node ", "qemu-"].iter().any(|start| line.starts_with(start)) {
             assert_eq!(printed[..told.len().min(printed.len())], told, "{line}");
             compared += 1;

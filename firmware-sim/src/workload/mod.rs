@@ -8,6 +8,7 @@ mod emotion;
 mod face;
 mod kernel;
 mod limit;
+mod machine;
 mod mechanics;
 mod modal;
 mod network;
@@ -119,6 +120,9 @@ const ALL: &[(&str, Make)] = &[
     ("styled-i16", styled::fixed),
     ("servos", servos::float),
     ("servos-i16", servos::fixed),
+    ("servo-head", machine::head),
+    ("servo-lamp", machine::lamp),
+    ("servo-antennas", machine::antennas),
     ("pipeline", pipeline::float),
     ("pipeline-int", pipeline::integer),
     ("kernel-f32", kernel::f32),

@@ -11,6 +11,7 @@ pub mod emotion;
 pub mod face;
 mod frames;
 pub mod kernel;
+pub mod machine;
 pub mod mechanics;
 pub mod modal;
 pub mod peer;
