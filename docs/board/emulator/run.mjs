@@ -32,9 +32,19 @@ for (let i = 0; i < half(44); i++) {
   if (kind === 1 && size > 0) chip.flash.set(elf.subarray(offset, offset + size), address - FLASH);
 }
 
-// What the boot ROM does: it takes the first 256 bytes of the flash to the end of the RAM, and starts them.
+// What the boot ROM does: it takes the first 256 bytes of the flash to the end of the RAM, checks their sum, and starts them.
 const BOOT = 0x41f00;
-chip.sram.set(chip.flash.subarray(0, 256), BOOT);
+const stage = chip.flash.subarray(0, 256);
+let sum = -1;
+for (const byte of stage.subarray(0, 252)) {
+  sum ^= byte << 24;
+  for (let bit = 0; bit < 8; bit++) sum = (sum << 1) ^ (sum < 0 ? 0x04c11db7 : 0);
+}
+if (sum >>> 0 !== chip.flashView.getUint32(252, true)) {
+  console.error('the first 256 bytes of the image are no second stage: a chip would not start it');
+  process.exit(1);
+}
+chip.sram.set(stage, BOOT);
 const core = chip.core;
 [core.SP, core.LR, core.PC] = [0x20000000 + BOOT, 0, 0x20000000 + BOOT];
 

@@ -12,8 +12,9 @@ const BAUD: u32 = 115_200;
 
 const RESETS_RESET: u32 = 0x4000_c000;
 const RESETS_DONE: u32 = 0x4000_c008;
-/// IO_BANK0, PADS_BANK0, PLL_SYS, PWM, UART0.
-const USED: u32 = 1 << 5 | 1 << 8 | 1 << 12 | 1 << 14 | 1 << 22;
+/// IO_BANK0, PADS_BANK0, PLL_SYS, PWM.
+const USED: u32 = 1 << 5 | 1 << 8 | 1 << 12 | 1 << 14;
+const UART0: u32 = 1 << 22;
 const XOSC_CTRL: u32 = 0x4002_4000;
 const XOSC_STATUS: u32 = 0x4002_4004;
 const XOSC_STARTUP: u32 = 0x4002_400c;
@@ -70,8 +71,10 @@ pub fn start_clocks() {
     write(CLK_SYS_CTRL, 0);
     write(CLK_SYS_CTRL, 1);
     until(CLK_SYS_SELECTED, 1 << 1);
-    // The serial port from the core's clock.
+    // The serial port from the core's clock: it does not leave its reset without one.
     write(CLK_PERI_CTRL, 1 << 11);
+    change(RESETS_RESET, UART0, 0);
+    until(RESETS_DONE, UART0);
     write(GPIO_CTRL, 2);
     for pin in 2..6 {
         write(GPIO_CTRL + 8 * pin, 4);
