@@ -1,4 +1,4 @@
-//! Registers by address, and all that is unsafe. In a project of your own a crate of the part does this.
+//! Registers by address: all unsafe blocks are here. In a project of your own a crate of the part does this.
 
 /// Reads a register. The addresses are those of the board files.
 pub fn read(address: u32) -> u32 {
