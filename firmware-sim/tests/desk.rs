@@ -5,19 +5,20 @@ use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 
-use kinesic::{LimitState, Limiter, Pipeline, PipelineState, Servos, Translator, TranslatorState};
+use kinesic::play::Move;
+use kinesic::{LimitState, Limiter, Pipeline, PipelineState, Player, Servos, Translator, TranslatorState};
 use kinesic_firmware_sim::build::{self, Folders};
 use kinesic_firmware_sim::elf::Image;
 use kinesic_firmware_sim::toolchain::{self, Toolchain};
-use kinesic_host::moves::{self, Options};
 use kinesic_host::pack::PackFile;
-use kinesic_host::robot::Machine;
 
+#[path = "../../docs/board/examples/desk/calm.rs"]
+mod calm;
 #[path = "../../docs/board/examples/desk/robot.rs"]
 #[allow(dead_code, unreachable_pub, missing_docs, reason = "what the board runs; here its mood and its losses")]
 mod robot;
 
-/// Twice the move: the mood goes up and down, frames are lost.
+/// Twice the move: the mood goes up and down, frames are lost, the move comes again.
 const FRAMES: usize = 800;
 const PAGE: &str = "docs/robot.md";
 const HEADER: &str = "frame,pan,tilt,left_antenna,right_antenna";
@@ -26,23 +27,22 @@ fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// The host's numbers: its own reader of the move, core through the library, nothing of the board's.
+/// The host's numbers: core through the library, the pack's metadata by the host.
 fn expected() -> Vec<String> {
     let desk = repository().join("docs/board/examples/desk");
     let file = PackFile::read(&desk.join("lively.kin")).unwrap();
     let pack = file.pack().unwrap();
-    let machine = Machine::from_pack(&pack).unwrap().unwrap();
-    let calm = machine.clip(&moves::read(&desk.join("move.csv"), &Options::default()).unwrap(), None).unwrap();
     let pipeline = Pipeline::<(Translator<2, 256>, Limiter<2>), 2>::load(&pack).unwrap();
     let servos = Servos::load(&pack).unwrap();
     let mut state = PipelineState::<(TranslatorState<2, 256>, LimitState<2>), 2>::new();
-    state.engine.0.controls.strength = 0.0;
     pipeline.start_coordinates(&mut state, &[0.0; 4]);
+    let mut player = Player::<4, 2>::new([0.0; 4]);
+    player.start([0.0; 4], 50);
+    player.layers[0].play(Move::new(&calm::FRAMES).unwrap().looped(), 50);
     let mut out = [0.0; 4];
     let mut numbers = Vec::new();
     for frame in 0..FRAMES {
-        let row = calm.coordinates(frame % calm.frames()).unwrap();
-        let angles: Vec<f32> = row[..4].iter().map(|x| *x as f32).collect();
+        let angles = *player.step();
         state.engine.0.controls.strength = robot::mood(frame as u32);
         let came = (!robot::lost(frame as u32)).then_some(&angles[..]);
         pipeline.step_coordinates(&mut state, came, &mut out);

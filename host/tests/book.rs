@@ -190,7 +190,7 @@ fn the_readme_runs_as_written() {
 
 #[test]
 fn the_book_runs_as_written() {
-    let pages = ["tour", "your-clips", "your-skeleton", "model-size", "export", "view", "precision"];
+    let pages = ["tour", "your-clips", "your-skeleton", "model-size", "export", "view", "precision", "moves", "player"];
     for page in pages {
         let [ran, _] = run(&format!("docs/{page}.md"));
         assert!(ran >= 2, "{page}: {ran} commands");
@@ -202,7 +202,7 @@ fn the_firmware_of_the_desk_robot_has_what_its_page_makes() {
     let folder = folder();
     let [ran, _] = run_in(&folder, "docs/robot.md");
     assert!(ran >= 8, "{ran} commands");
-    for name in ["lively.kin", "move.csv"] {
+    for name in ["lively.kin", "calm.rs"] {
         let made = std::fs::read(folder.path().join(name)).unwrap();
         let kept = std::fs::read(repository().join("docs/board/examples/desk").join(name)).unwrap();
         assert!(made == kept, "docs/board/examples/desk/{name} is not what docs/robot.md makes: copy it from there");

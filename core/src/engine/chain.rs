@@ -10,11 +10,15 @@ macro_rules! chain {
             type State = ($($engine::State,)+);
 
             fn start(&self, state: &mut Self::State, frame: &Frame<ROWS>) {
-                // What comes later starts from what those before make of the frame.
-                let mut frame = *frame;
+                // What comes later starts from what those before make of the frame, but for what stands where the machine does.
+                let mut made = *frame;
                 $(
-                    self.$index.start(&mut state.$index, &frame);
-                    self.$index.step(&mut state.$index, &mut frame);
+                    if $engine::STANDS {
+                        self.$index.start(&mut state.$index, frame);
+                    } else {
+                        self.$index.start(&mut state.$index, &made);
+                        self.$index.step(&mut state.$index, &mut made);
+                    }
                 )+
             }
 
@@ -48,6 +52,7 @@ chain!(A.0, B.1, C.2, D.3);
 
 impl<const ROWS: usize, E: Engine<ROWS>> Engine<ROWS> for Option<E> {
     type State = E::State;
+    const STANDS: bool = E::STANDS;
 
     fn start(&self, state: &mut Self::State, frame: &Frame<ROWS>) {
         if let Some(engine) = self {

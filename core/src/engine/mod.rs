@@ -37,6 +37,10 @@ pub trait Engine<const ROWS: usize> {
     /// What it remembers from frame to frame. The default is at rest.
     type State: Default;
 
+    /// True for an engine that stands where the machine does: in series it starts from the frame itself, not from what engines before it
+    /// make of it.
+    const STANDS: bool = false;
+
     /// Puts the state where it would be had `frame` always been held.
     fn start(&self, state: &mut Self::State, frame: &Frame<ROWS>);
 

@@ -127,6 +127,7 @@ impl<const ROWS: usize, A: Axis> LimiterOf<'_, ROWS, A> {
 
 impl<const ROWS: usize, A: Axis> Engine<ROWS> for LimiterOf<'_, ROWS, A> {
     type State = LimitStateOf<ROWS, A>;
+    const STANDS: bool = true;
 
     fn start(&self, state: &mut Self::State, frame: &Frame<ROWS>) {
         LimiterOf::start(self, state, frame);

@@ -7,6 +7,8 @@
 #[cfg_attr(target_abi = "eabihf", path = "board_stm32f405.rs")]
 #[cfg_attr(not(target_abi = "eabihf"), path = "board_rp2040.rs")]
 mod board;
+// `kinesic export --rust calm.csv --robot lively.kin` makes it.
+mod calm;
 mod registers;
 mod robot;
 
@@ -14,13 +16,10 @@ use core::fmt::Write;
 use core::sync::atomic::{AtomicU32, Ordering};
 
 use board::Serial;
-use robot::{Robot, SERVOS};
+use robot::Robot;
 
 /// In flash, aligned, used in place.
 static PACK: &[u8] = kinesic::include_pack!("lively.kin");
-
-// The calm move, `MOVE: [[f32; SERVOS]; N]`, rad: build.rs makes it from move.csv. A table in flash stands for whatever moves your robot.
-include!(concat!(env!("OUT_DIR"), "/move.rs"));
 
 /// Frames that the timer has stepped. Only its interrupt writes it.
 static FRAMES: AtomicU32 = AtomicU32::new(0);
@@ -30,7 +29,7 @@ fn main() -> ! {
     board::start_clocks();
     let mut serial = Serial::start();
     // All that can fail, fails here.
-    let robot = match Robot::load(PACK) {
+    let robot = match Robot::load(PACK, &calm::FRAMES) {
         Ok(robot) => robot,
         Err(error) => {
             _ = writeln!(serial, "the pack is refused: {error}\r");
@@ -52,18 +51,17 @@ fn main() -> ! {
     }
 }
 
-/// 50 times a second: one frame of the move, or none where it is lost, becomes four pulse widths.
+/// 50 times a second: the next frame becomes four pulse widths.
 #[cortex_m_rt::exception]
 fn SysTick() {
     // The interrupt's own: nothing else sees the robot, so nothing is locked.
     static mut ROBOT: Option<Robot> = None;
     if ROBOT.is_none() {
-        *ROBOT = Robot::load(PACK).ok();
+        *ROBOT = Robot::load(PACK, &calm::FRAMES).ok();
     }
     let frame = FRAMES.load(Ordering::Relaxed);
     if let Some(robot) = ROBOT {
-        let angles = MOVE.get(frame as usize % MOVE.len()).filter(|_| !robot::lost(frame));
-        board::set_pulses(&robot.frame(angles, robot::mood(frame)));
+        board::set_pulses(&robot.frame(robot::mood(frame), robot::lost(frame)));
         FRAMES.store(frame.wrapping_add(1), Ordering::Relaxed);
     }
 }

@@ -1,7 +1,10 @@
 //! What the robot does in a frame. Nothing here knows of a board.
 
 use kinesic::model::Floats;
-use kinesic::{LimitState, Limiter, LoadError, Pack, Pipeline, PipelineState, Servos, Translator, TranslatorState};
+use kinesic::play::Move;
+use kinesic::{
+    LimitState, Limiter, LoadError, Pack, Pipeline, PipelineState, Player, Servos, Translator, TranslatorState,
+};
 
 /// Servos, and coordinates of the pack.
 pub const SERVOS: usize = 4;
@@ -19,23 +22,30 @@ type State = PipelineState<(TranslatorState<ROWS, STATES>, LimitState<ROWS>), RO
 /// Where the robot is parked, rad. Hobby servos do not report; one that does is asked, and `Servos::coordinate` gives its angle.
 const PARKED: [f32; SERVOS] = [0.0; SERVOS];
 
-/// The pack's tables, and what they remember.
+/// Frames in which the robot comes from where it is parked into its move.
+const SECOND: u16 = 50;
+
+/// The pack's tables, what they remember, and the player.
 pub struct Robot {
     style: Style,
     servos: Servos<'static>,
     state: State,
+    player: Player<'static, SERVOS, 1>,
 }
 
 impl Robot {
-    /// A robot that stands where it is parked.
+    /// A robot that stands where it is parked, and goes from there to a move that comes again and again.
     #[inline(never)]
-    pub fn load(pack: &'static [u8]) -> Result<Self, LoadError> {
+    pub fn load(pack: &'static [u8], calm: &'static [[f32; SERVOS]]) -> Result<Self, LoadError> {
         let pack = Pack::load(pack)?;
         let (style, servos, mut state) = (Style::load(&pack)?, Servos::load(&pack)?, State::new());
-        // Plain: the limits start where the style puts the robot, and that must be where it stands.
-        state.engine.0.controls.strength = 0.0;
         style.start_coordinates(&mut state, &PARKED);
-        Ok(Self { style, servos, state })
+        let mut player = Player::new(PARKED);
+        player.start(PARKED, SECOND);
+        if let ([base], Some(calm)) = (&mut player.layers, Move::new(calm)) {
+            base.play(calm.looped(), SECOND);
+        }
+        Ok(Self { style, servos, state, player })
     }
 
     /// The pulse widths at which it stands, microseconds.
@@ -43,11 +53,12 @@ impl Robot {
         self.pulses(&PARKED)
     }
 
-    /// One frame: angles, rad, or none where none came, and how lively it is, 0 to 1. Pulse widths, microseconds, come out.
-    pub fn frame(&mut self, angles: Option<&[f32; SERVOS]>, mood: f32) -> [u16; SERVOS] {
+    /// One frame: how lively the robot is, 0 to 1, and whether the frame of the move is lost. Pulse widths, microseconds, come out.
+    pub fn frame(&mut self, mood: f32, lost: bool) -> [u16; SERVOS] {
         let mut out = [0.0; SERVOS];
         self.state.engine.0.controls.strength = mood;
-        self.style.step_coordinates(&mut self.state, angles.map(|angles| &angles[..]), &mut out);
+        let angles = self.player.step();
+        self.style.step_coordinates(&mut self.state, (!lost).then_some(&angles[..]), &mut out);
         self.pulses(&out)
     }
 
