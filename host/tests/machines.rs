@@ -143,6 +143,15 @@ fn a_mood_learned_from_a_robot_s_own_recordings_ends_in_servo_positions_with_the
         }
     }
     assert_eq!(servos.commands(&out).map(|command| command.id).collect::<Vec<_>>(), [11, 12, 3, 4]);
+
+    // Wherever it stands when it is switched on, and in whatever mood: the first frame is within the limits of that place.
+    let here = [0.4f32, -0.1, 0.2, -0.3];
+    let mut state: PipelineState<(TranslatorState<2, 256>, LimitState<2>), 2> = PipelineState::new();
+    pipeline.start_coordinates(&mut state, &here);
+    pipeline.step_coordinates(&mut state, Some(&here), &mut out);
+    let step = |at: usize| (out[at] - here[at]).abs();
+    let most = |at: usize| pipeline.engine.1.table().acceleration.as_flattened()[at] / 2500.0;
+    assert!((0..4).all(|at| step(at) <= 1.001 * most(at)) && (0..4).any(|at| step(at) > 0.5 * most(at)), "{out:?}");
 }
 
 /// A greeting at a mood: one sequence of poses; the mood makes it larger and faster, and lifts the antennas.

@@ -26,7 +26,8 @@ impl Way {
         // Rounding of what follows needs some room.
         let most = &Budget { change: 0.98 * most.change, jerk: 0.98 * most.jerk };
         let Brake { ramp, hold, release, .. } = Brake::new(from.step, from.change, aim);
-        if !(ramp + hold + release < 30_000.0) {
+        let short = ramp + hold + release < 30_000.0;
+        if !short {
             return None;
         }
         let [ramp, hold, release] = [ramp, hold, release].map(|x| x as u16);
