@@ -214,9 +214,10 @@ pub fn fingerprint(path: &Path) -> Result<InputFile, std::io::Error> {
     Ok(InputFile { path: path.display().to_string(), sha256 })
 }
 
-/// Frame rate for a pack unless told otherwise: that of the slowest clip, at most 60 per second.
-pub fn common_rate<'a>(clips: impl Iterator<Item = &'a Clip>) -> f64 {
-    let slowest = clips.map(Clip::fps).fold(60.0, f64::min);
+/// Frame rate for a pack unless told otherwise: that of the slowest clip, at most 60 per second, or as often as a machine is told where to go.
+pub fn common_rate<'a>(sources: impl Iterator<Item = &'a Source>) -> f64 {
+    let most = |source: &Source| source.machine.as_ref().map_or(60.0, |machine| machine.limits.frame_rate);
+    let slowest = sources.map(|source| source.clip.fps().min(most(source))).fold(f64::INFINITY, f64::min);
     // Frame times are written with few digits: 30.0003 is meant to be 30.
     if (slowest - slowest.round()).abs() < 0.01 * slowest { slowest.round() } else { slowest }
 }

@@ -190,7 +190,18 @@ fn the_readme_runs_as_written() {
 
 #[test]
 fn the_book_runs_as_written() {
-    let pages = ["tour", "your-clips", "your-skeleton", "model-size", "export", "view", "precision", "moves", "player"];
+    let pages = [
+        "tour",
+        "your-clips",
+        "your-skeleton",
+        "model-size",
+        "export",
+        "view",
+        "precision",
+        "moves",
+        "player",
+        "reachy-mini",
+    ];
     for page in pages {
         let [ran, _] = run(&format!("docs/{page}.md"));
         assert!(ran >= 2, "{page}: {ran} commands");

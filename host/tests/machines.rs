@@ -7,13 +7,13 @@ mod servos;
 use std::path::Path;
 use std::process::Command;
 
-use kinesic::{LimitState, Limiter, Pipeline, PipelineState, Servos, Translator, TranslatorState};
+use kinesic::{Frame, LimitState, Limiter, Pipeline, PipelineState, Servos, Translator, TranslatorState};
 use kinesic_host::moves::{self, Options};
 use kinesic_host::pack::PackFile;
 use kinesic_host::robot::{Defaults, Machine, Robot, ServoTable};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use servos::{FPS, antennas};
+use servos::{FPS, antennas, head, lamp};
 
 /// The head with two antennas: ticks, ticks the other way, degrees about 90, pulses.
 const TABLE: &str = r#"
@@ -136,6 +136,10 @@ fn a_mood_learned_from_a_robot_s_own_recordings_ends_in_servo_positions_with_the
         let coordinates: Vec<f32> = clip.coordinates(frame).unwrap()[..4].iter().map(|x| *x as f32).collect();
         if frame == 0 {
             pipeline.start_coordinates(&mut state, &coordinates);
+            // The written move begins in style, and a robot that plays it stands there.
+            let (mut style, mut first) = (state.engine.0, Frame::from_coordinates(&coordinates));
+            pipeline.engine.0.step(&mut style, &mut first);
+            pipeline.engine.1.start(&mut state.engine.1, &first);
         }
         pipeline.step_coordinates(&mut state, Some(&coordinates), &mut out);
         for (command, written) in servos.commands(&out).zip(written.frame(frame)) {
@@ -152,6 +156,43 @@ fn a_mood_learned_from_a_robot_s_own_recordings_ends_in_servo_positions_with_the
     let step = |at: usize| (out[at] - here[at]).abs();
     let most = |at: usize| pipeline.engine.1.table().acceleration.as_flattened()[at] / 2500.0;
     assert!((0..4).all(|at| step(at) <= 1.001 * most(at)) && (0..4).any(|at| step(at) > 0.5 * most(at)), "{out:?}");
+}
+
+/// Joints in a table of servos, moves in degrees, and nothing else.
+#[test]
+fn a_head_and_a_lamp_are_learned_from_files_of_their_moves() {
+    for machine in [head(), lamp()] {
+        let folder = tempfile::tempdir().unwrap();
+        let at = folder.path();
+        let names: Vec<&str> = machine.servos.iter().map(|servo| servo.name).collect();
+        let servo = |name: &&str| {
+            format!(
+                "[[servo]]\nname = \"{name}\"\nunit = \"deg\"\nmin = -180\nmax = 180\nspeed = 600\nacceleration = 9000\n"
+            )
+        };
+        std::fs::write(at.join("m.toml"), names.iter().map(servo).collect::<String>()).unwrap();
+        for (seed, seconds) in [(1, 40.0), (2, 40.0), (77, 30.0)] {
+            let [calm, lively] = machine.take(seed, seconds);
+            std::fs::write(at.join(format!("calm{seed}.csv")), table(&calm, &names)).unwrap();
+            std::fs::write(at.join(format!("lively{seed}.csv")), table(&lively, &names)).unwrap();
+        }
+        kinesic(at, &["robot", "import", "m.toml", "--out", "m.kin"]).unwrap();
+        let pairs = ["--pair", "calm1.csv", "lively1.csv", "--pair", "calm2.csv", "lively2.csv"];
+        let train = ["train", "translate", "--robot", "m.kin", "--out", "lively.kin", "--no-report"];
+        kinesic(at, &[&train, &pairs[..]].concat()).unwrap();
+        let unseen = ["--pair", "calm77.csv", "lively77.csv", "--json"];
+        let text = kinesic(at, &[&["eval", "translate", "lively.kin"], &unseen[..]].concat()).unwrap();
+        let report: serde_json::Value = serde_json::from_str(&text).unwrap();
+        let joints = |what: &str| report["degrees"][what]["joints"].as_array().unwrap().clone();
+        let size = std::fs::metadata(at.join("lively.kin")).unwrap().len();
+        println!("{}: pack of {size} B", machine.name);
+        // The first joint is the base.
+        for (before, after) in joints("identity").iter().zip(joints("error")).skip(1) {
+            let [was, is] = [before, &after].map(|joint| joint["angle"].as_f64().unwrap());
+            println!("  {}: {is:.2} degrees, doing nothing {was:.2}", after["joint"]);
+            assert!(is < 1.5 && is < 0.25 * was, "{was} {is}: {text}");
+        }
+    }
 }
 
 /// A greeting at a mood: one sequence of poses; the mood makes it larger and faster, and lifts the antennas.

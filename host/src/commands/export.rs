@@ -91,8 +91,8 @@ fn rust(args: &Args, options: &ReadOptions) -> miette::Result<String> {
     }
     let Some(machine) = &options.machine else {
         return Err(miette!(
-            help = "give the robot: kinesic export --rust nod.csv --robot desk.kin --out nod.rs",
-            "{}: found a clip, expected a pack or a robot's move",
+            help = "expected a pack; or, for a robot's move, its robot: kinesic export --rust nod.csv --robot desk.kin --out nod.rs",
+            "{}: not a pack",
             args.file.display()
         ));
     };

@@ -66,7 +66,7 @@ pub struct Args {
     /// What is held back together
     #[arg(long, value_enum, default_value_t = SplitBy::Clip)]
     split: SplitBy,
-    /// Frames per second of the pack (default: that of the slowest clip, at most 60)
+    /// Frames per second of the pack (default: that of the slowest clip, at most 60; of a robot, at most its own)
     #[arg(long, value_name = "RATE")]
     fps: Option<f64>,
     /// Seed of weights, order, noise and split
@@ -115,7 +115,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let first = mechanics.iter().position(|m| *m).ok_or_else(|| {
         miette!(help = "name them with --clips", "none of the {} clips of the pool looks non-expressive", paths.len())
     })?;
-    let fps = args.fps.unwrap_or_else(|| common_rate(sources.iter().map(|s| &s.clip)));
+    let fps = args.fps.unwrap_or_else(|| common_rate(sources.iter()));
     let rig = sources[first].rig().into_diagnostic()?;
     let mut clips = Vec::new();
     for (source, mechanics) in sources.iter().zip(&mechanics) {

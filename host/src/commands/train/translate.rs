@@ -57,7 +57,7 @@ pub struct Args {
     /// Train on left-right mirrored copies too
     #[arg(long, value_enum, default_value_t = Mirror::Auto)]
     mirror: Mirror,
-    /// Frames per second of the pack (default: that of the slowest clip, at most 60)
+    /// Frames per second of the pack (default: that of the slowest clip, at most 60; of a robot, at most its own)
     #[arg(long, value_name = "RATE", allow_negative_numbers = true)]
     fps: Option<f64>,
     /// Seed of random choices; recorded in the pack (this trainer makes none)
@@ -133,7 +133,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let read = |path: &PathBuf| Source::read(path, &options).into_diagnostic();
     let sources =
         paths.iter().map(|(a, b)| Ok((read(a)?, read(b)?))).collect::<miette::Result<Vec<(Source, Source)>>>()?;
-    let fps = args.fps.unwrap_or_else(|| common_rate(sources.iter().flat_map(|(a, b)| [&a.clip, &b.clip])));
+    let fps = args.fps.unwrap_or_else(|| common_rate(sources.iter().flat_map(|(a, b)| [a, b])));
     check_rate(fps, sources.iter().flat_map(|(a, b)| [&a.clip, &b.clip]))?;
     let rig = sources[0].0.rig().into_diagnostic()?;
     let on_rig = |source: &Source| source.on_rig(&rig, fps).into_diagnostic();
