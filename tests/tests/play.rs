@@ -73,7 +73,7 @@ fn nothing_jumps_whatever_is_called_between_two_frames() {
         a / a4,
         j / j4
     );
-    assert!(v / v4 > 3.5 && a / a4 > 14.0 && j / j4 > 32.0, "{v} {v4} {a} {a4} {j} {j4}");
+    assert!(v / v4 > 3.5 && a / a4 > 12.0 && j / j4 > 32.0, "{v} {v4} {a} {a4} {j} {j4}");
 }
 
 /// A thousand random states, each the beginning of a random move, behind random limits: all four hold.
@@ -165,5 +165,69 @@ fn numbers_that_are_none_are_ignored_and_moves_of_them_refused() {
             let out = *player.step();
             assert!(out.iter().all(|x| (x - 0.1).abs() < 1e-6), "{wild}: {out:?}");
         }
+    }
+}
+
+/// What a review found: loops shorter than their blend grew without bound, and weights left their range.
+#[test]
+fn short_loops_and_changes_in_mid_change_stay_in_their_range() {
+    for count in [1usize, 2, 3, 5, 10, 40, 100] {
+        for frames in [0u16, 1, 10, 25, 50, 100, 1000, u16::MAX] {
+            let turn = 2.0 * core::f32::consts::PI / count as f32;
+            // Ends that meet, and ends that do not.
+            for slope in [0.0, 0.3] {
+                let wave: Frames = (0..count)
+                    .map(|at| [0.3 * (at as f32 * turn).sin() + slope * at as f32 / count as f32; SERVOS])
+                    .collect();
+                let mut player = Player::<SERVOS, 1>::new([0.0; SERVOS]);
+                player.start([1.0; SERVOS], 50);
+                player.layers[0].play(Move::new(&wave).unwrap().looped(), frames);
+                let most = (0..20_000).map(|_| player.step()[0].abs()).fold(0.0, f32::max);
+                assert!(most < 1.4, "{count} frames, blend of {frames}, {slope}: {most}");
+                if slope == 0.0 && count > 8 {
+                    let worst = (0..count).map(|at| (player.step()[0] - wave[(20_000 + at) % count][0]).abs());
+                    assert!(worst.fold(0.0, f32::max) < 1e-5, "{count} frames, blend of {frames}");
+                }
+            }
+        }
+    }
+    let one = [[1.0; SERVOS]];
+    let mut random = Random(41);
+    for _ in 0..2_000 {
+        let mut player = Player::<SERVOS, 2>::new([0.0; SERVOS]);
+        let layer = &mut player.layers[1];
+        layer.play(Move::new(&one).unwrap(), 10);
+        let mut most = 0.0f32;
+        for _ in 0..6 {
+            let frames = random.log(1.0, 65_535.0) as u16;
+            let layer = &mut player.layers[1];
+            match (random.unit() * 3.0) as u32 {
+                0 => layer.leave(frames),
+                1 => layer.weight(random.unit(), frames),
+                _ => layer.mask([random.unit(); SERVOS], frames),
+            }
+            for _ in 0..(random.unit() * 30.0) as usize {
+                let shown = player.step()[0];
+                most = most.max((shown - 0.5).abs());
+            }
+        }
+        assert!(most < 0.502, "{most}");
+    }
+}
+
+/// A target that stands is reached and held, however slowly.
+#[test]
+fn a_slow_search_comes_to_its_target_and_stays() {
+    for frames in [10u16, 200, 1000, 5000] {
+        let mut player = Player::<SERVOS, 1>::new([0.0; SERVOS]);
+        player.start([0.0; SERVOS], 50);
+        player.layers[0].follow(&[3.0; SERVOS], frames);
+        let nine_tenths = (0..).take_while(|_| player.step()[0] < 2.7).count();
+        assert!((nine_tenths as f32 / f32::from(frames) - 1.0).abs() < 0.3, "{frames}: {nine_tenths}");
+        for _ in 0..8 * u32::from(frames) {
+            player.step();
+        }
+        let worst = (0..20_000).map(|_| (player.step()[0] - 3.0).abs()).fold(0.0, f32::max);
+        assert!(worst < 1e-4, "{frames}: {worst}");
     }
 }

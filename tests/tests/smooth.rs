@@ -144,3 +144,52 @@ fn jerks_that_cannot_be_kept_are_refused_by_name() {
     }
     assert_eq!(refused(&servos.jerk[..1]), LoadError::Shape { tensor: "limit/jerk", found: 1, expected: 2 });
 }
+
+/// What a review found: plans longer than can be counted, a root of a difference that is nothing, places far from 0.
+#[test]
+fn odd_limits_that_are_taken_are_kept_and_targets_reached() {
+    let all = |x: f32| [[x; 3]; ROWS];
+    let servos = |rate, [lower, upper]: [f32; 2], [velocity, acceleration, jerk]: [f32; 3]| Servos {
+        lower: all(lower),
+        upper: all(upper),
+        velocity: all(velocity),
+        acceleration: all(acceleration),
+        jerk: all(jerk),
+        rest: all(upper),
+        rate,
+    };
+    let cases = [
+        (
+            servos(100.0, [-3.0, 3.0], [23.025_936, 37_390.395, 2.650_313_4]),
+            vec![-0.016_266_666, 0.007_276_304, 0.070_628_91],
+        ),
+        (servos(50.0, [-3.0, 3.0], [0.2, 60.0, 1e11]), vec![1.5]),
+        (
+            servos(1.0, [-100.0, -99.719_574], [0.011_889_854, 3.947_124_6e-4, 5.432_376_6e-4]),
+            vec![-100.0, -99.8, -99.72],
+        ),
+        (servos(50.0, [-0.118_085, -0.118_084], [1.0, 20.0, 400.0]), vec![-0.118_085, -0.118_084]),
+    ];
+    for (servos, targets) in cases {
+        let limits = Pipeline::new(rig(), servos.limiter(servos.table()).unwrap()).unwrap();
+        let (mut state, mut out, mut watch) = (State::new(), [0.0; SERVOS], Watch::new());
+        let here = [servos.upper[0][0].min(0.0); SERVOS];
+        limits.start_coordinates(&mut state, &here);
+        watch.last = here.map(|x| [f64::from(x), 0.0, 0.0]);
+        for frame in 0..600 {
+            let target = targets[frame % targets.len()];
+            limits.step_coordinates(&mut state, Some(&[target; SERVOS]), &mut out);
+            watch.check(&servos, &out);
+        }
+        let target = *targets.last().unwrap();
+        for _ in 0..limits.engine.recovery_frames() {
+            limits.step_coordinates(&mut state, Some(&[target; SERVOS]), &mut out);
+            watch.check(&servos, &out);
+        }
+        assert!(watch.most.iter().all(|share| *share < 1.001), "{:?} {servos:?}", watch.most);
+        assert_eq!(out, [target; SERVOS], "{servos:?}");
+    }
+    // A jerk that is lost in the product with the frame time is no missing one.
+    let lost = servos(100.0, [-1.0, 1.0], [1.0, 10.0, 1e-41]);
+    assert_eq!(lost.limiter(lost.table()).unwrap_err(), LoadError::Value { tensor: "limit/jerk", index: 0 });
+}

@@ -172,7 +172,8 @@ impl<'a, const ROWS: usize, A: Axis> LimiterOf<'a, ROWS, A> {
             if !STEPS.contains(&change) {
                 return refuse("limit/acceleration");
             }
-            if jerk != 0.0 && !(STEPS.contains(&jerk) && bounds.stop_frames() < LONGEST_STOP) {
+            let given = table.jerk.as_flattened().get(index).is_some_and(|jerk| *jerk != 0.0);
+            if given && !(STEPS.contains(&jerk) && bounds.stop_frames() < LONGEST_STOP) {
                 return refuse("limit/jerk");
             }
             if !(lower.abs() <= FARTHEST && lower <= upper) {

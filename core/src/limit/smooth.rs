@@ -55,10 +55,13 @@ impl Along for Smooth {
     }
 
     fn advance(&mut self, target: f32, bounds: &Bounds) {
-        self.axis = match bounds.jerk > 0.0 {
-            true => self.smoothly(target, bounds),
-            false => self.axis.gone(target, bounds),
-        };
+        if bounds.jerk > 0.0 {
+            self.axis = self.smoothly(target, bounds);
+            return;
+        }
+        // Another table may limit its jerk from here on.
+        let axis = self.axis.gone(target, bounds);
+        *self = Self { change: axis.went - self.axis.went, axis, ..Self::standing(target) };
     }
 }
 
@@ -78,7 +81,8 @@ impl Smooth {
             None => self.chase(&here, &own, bounds),
         };
         let at = within(motion.at, bounds.lower, bounds.upper);
-        if (at - motion.at).abs() > 1e-4 * bounds.speed + 1e-6 {
+        let rounding = 4.0 * f32::EPSILON * bounds.upper.max(-bounds.lower);
+        if (at - motion.at).abs() > 1e-4 * bounds.speed + 1e-6 + rounding {
             // Other limits than a frame ago: it stands at the bound.
             *self = Self { target: self.target, ..Self::REST };
             return Plain { at, went: 0.0, left: target - at };
@@ -98,7 +102,7 @@ impl Smooth {
     /// The plan after a step onto the target, if it may be made.
     fn lands(&self, here: &Motion, exact: &Motion, own: &Motion, bounds: &Bounds) -> Option<Plan> {
         let Bounds { lower, upper, speed, change, jerk } = *bounds;
-        let rounding = 2.0 * f32::EPSILON * upper.max(-lower).max(1.0);
+        let rounding = 2.0 * f32::EPSILON * upper.max(-lower);
         // What is left of the way to the target is lost in the next two frames.
         let (step, turn) = (exact.step - own.step, exact.change - own.change);
         let (step, left) = (step.abs(), (step + turn).abs().max(step.abs()));
@@ -173,7 +177,11 @@ fn followed(last: Motion, at: f32) -> Motion {
 /// The changes of step that acceleration, jerk and speed allow: with the greatest one it can just go back to 0 before it is too fast.
 fn ends(here: &Motion, bounds: &Bounds) -> (f32, f32) {
     let Bounds { speed, change, jerk, .. } = *bounds;
-    let most = |room: f32| sqrt((0.25 * jerk * jerk + 2.0 * jerk * room).max(0.0)) - 0.5 * jerk;
+    // The root less half the jerk, without their difference.
+    let most = |room: f32| {
+        let room = room.max(-0.125 * jerk);
+        2.0 * jerk * room / (sqrt((0.25 * jerk * jerk + 2.0 * jerk * room).max(0.0)) + 0.5 * jerk)
+    };
     let low = (here.change - jerk).max(-change).max(-most(speed + here.step));
     let high = (here.change + jerk).min(change).min(most(speed - here.step));
     (low.min(high), high)

@@ -81,9 +81,9 @@ impl Plan {
         let less = release.saturating_sub(1);
         let near = [(0, 0, 1), (0, 0, 0), (0, 1, 1), (0, 1, 0), (1, 0, 1), (0, 0, 2), (1, 0, 2), (1, 1, 2)];
         let near = near.map(|(first, second, third)| (ramp + first, hold + second, less + third));
-        let all = ramp + less;
+        let all = ramp.saturating_add(less);
         let even =
-            [(all / 2, 0, all - all / 2), (all.saturating_sub(1), 0, 1), (all, 0, 1), (all / 2, 0, all + 1 - all / 2)];
+            [(all / 2, 0, all - all / 2), (all.saturating_sub(1), 0, 1), (all, 0, 1), (all / 2, 0, all - all / 2 + 1)];
         let mut plans =
             near.into_iter().chain(even).map(|(ramp, hold, release)| Self { ramp: ramp.max(1), hold, release });
         plans.find(|plan| plan.holds(motion, bounds))

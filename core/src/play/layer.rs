@@ -22,6 +22,9 @@ enum Source<'a, const N: usize> {
     Live([f32; N], f32),
 }
 
+/// Greatest strength.
+const STRONGEST: f32 = 4.0;
+
 /// One layer: a move, a live target or rest.
 ///
 /// What is called between two frames never makes a jump. Frames are those of the pipeline; numbers that are not finite are ignored.
@@ -52,24 +55,25 @@ impl<'a, const N: usize> Layer<'a, N> {
             change: None,
             seam: 1,
             fade: None,
-            weight: Ease::at([weight]),
-            strength: Ease::at([1.0]),
-            mask: Ease::at([1.0; N]),
+            weight: Ease::at([weight], 1.0),
+            strength: Ease::at([1.0], STRONGEST),
+            mask: Ease::at([1.0; N], 1.0),
         }
     }
 
-    /// Puts it where the robot is; what it plays takes over in `frames` frames.
+    /// Puts it where the robot is, all of it seen; what it plays takes over in `frames` frames.
     pub(super) fn stand(&mut self, place: &[f32; N], frames: u16) {
-        (self.blend, self.change) = (Blend::standing(*place), Some(frames.max(1)));
+        *self = Self { source: self.source, seam: self.seam, change: Some(frames.max(1)), ..Self::new(*place, 1.0) };
     }
 
     /// Not seen from now on.
     pub(super) fn hide(&mut self) {
-        self.weight = Ease::at([0.0]);
+        self.weight = Ease::at([0.0], 1.0);
     }
 
-    /// Plays a move from its beginning, at full weight. What was played before is gone after `frames` frames. A move that ends while it moves
-    /// comes to a stand in as many.
+    /// Plays a move from its beginning, at full weight. What was played before is gone after `frames` frames, from 1 to 1000; earlier where it
+    /// would go far in that time. A move that ends while it moves comes to a stand in as many, and one that is looped blends its ends in as many, or in half
+    /// its own frames.
     pub fn play(&mut self, motion: Move<'a, N>, frames: u16) {
         (self.source, self.seam, self.fade) = (Source::Move(motion, 0), frames, None);
         // What is not seen begins without a blend.
@@ -77,9 +81,10 @@ impl<'a, const N: usize> Layer<'a, N> {
         self.appear(frames);
     }
 
-    /// Plays a move once: it comes in `frames` frames, and goes in its last `frames` frames.
+    /// Plays a move once: it comes in `frames` frames, and goes in its last `frames` frames, of a short move in half its frames each.
     pub fn gesture(&mut self, motion: Move<'a, N>, frames: u16) {
-        self.play(motion, frames);
+        let frames = frames.min(motion.half());
+        self.play(motion.once(), frames);
         self.fade = Some(frames);
     }
 
@@ -111,22 +116,22 @@ impl<'a, const N: usize> Layer<'a, N> {
         self.weight.go([0.0], frames);
     }
 
-    /// How much it counts against those beneath it, 0 to 1; there in `frames` frames.
+    /// How much it counts against those beneath it, 0 to 1; there in at most `frames` frames.
     pub fn weight(&mut self, weight: f32, frames: u16) {
-        self.weight.go([weight.clamp(0.0, 1.0)], frames);
+        self.weight.go([weight], frames);
     }
 
-    /// How far it goes from rest: 0 stays there, 1 as recorded, at most 4; there in `frames` frames.
+    /// How far it goes from rest: 0 stays there, 1 as recorded, at most 4; there in at most `frames` frames.
     pub fn strength(&mut self, strength: f32, frames: u16) {
-        self.strength.go([strength.clamp(0.0, 4.0)], frames);
+        self.strength.go([strength], frames);
     }
 
-    /// What of it counts, 0 to 1 per coordinate: `[0.0, 1.0]` is the second coordinate alone. There in `frames` frames; at once where the
-    /// layer is not seen.
+    /// What of it counts, 0 to 1 per coordinate: `[0.0, 1.0]` is the second coordinate alone. There in at most `frames` frames; at once
+    /// where the layer is not seen.
     pub fn mask(&mut self, mask: [f32; N], frames: u16) {
-        self.mask.go(mask.map(|x| x.clamp(0.0, 1.0)), frames);
+        self.mask.go(mask, frames);
         if !self.is_seen() {
-            self.mask = Ease::at(*self.mask.target());
+            self.mask = Ease::at(*self.mask.target(), 1.0);
         }
     }
 
@@ -180,8 +185,14 @@ impl<'a, const N: usize> Layer<'a, N> {
         let Source::Move(motion, at) = &mut self.source else { return [*rest; 3] };
         if *at == motion.frames() {
             // What comes next, its beginning or a stand at its end, is another motion.
+            let frames = match motion.is_looped() {
+                true => self.seam.min(motion.half()),
+                false => self.seam,
+            };
             *at = if motion.is_looped() { 0 } else { *at };
-            self.change = Some(self.change.unwrap_or(self.seam.max(1)));
+            if !motion.ends_meet() {
+                self.change = Some(self.change.unwrap_or(frames.max(1)));
+            }
         }
         let frames = [0, 1, 2].map(|next| motion.frame(at.saturating_add(next)));
         *at = at.saturating_add(1);

@@ -12,7 +12,7 @@
 //! ```
 //! use kinesic::play::{Move, Player};
 //!
-//! // Two servos: pan and tilt, rad. `kinesic robot moves` writes such arrays.
+//! // Two servos: pan and tilt, rad. `kinesic export --rust` writes such arrays.
 //! static IDLE: [[f32; 2]; 3] = [[0.0, 0.1], [0.1, 0.1], [0.0, 0.1]];
 //! static NOD: [[f32; 2]; 4] = [[0.0, 0.0], [0.0, 0.3], [0.0, 0.3], [0.0, 0.0]];
 //!
@@ -27,7 +27,8 @@
 //!
 //! # What is continuous
 //!
-//! Position, velocity and acceleration of what a player gives, whatever is called between two frames. A move that is begun starts with what is
+//! Position, velocity and acceleration of what a player gives, whatever is called between two frames, but for [`Player::start`], which says where the robot is, and
+//! for a change of [`Layer::mode`]. A move that is begun starts with what is
 //! left of the motion before it, and that goes to nothing on a polynomial of degree five (Bollo 2018). Weights and strengths change on
 //! such polynomials too. Live targets are sought by three poles in a row. How far and how fast is not bounded: a limiter does that.
 

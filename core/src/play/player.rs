@@ -15,7 +15,7 @@ pub struct Player<'a, const N: usize, const LAYERS: usize> {
 }
 
 impl<'a, const N: usize, const LAYERS: usize> Player<'a, N, LAYERS> {
-    /// All layers at rest, which are these coordinates, rad or m.
+    /// All layers at rest, which are these coordinates, finite, rad or m.
     pub const fn new(rest: [f32; N]) -> Self {
         let mut layers = [Layer::new(rest, 0.0); LAYERS];
         if let Some((base, _)) = layers.split_first_mut() {
@@ -24,7 +24,8 @@ impl<'a, const N: usize, const LAYERS: usize> Player<'a, N, LAYERS> {
         Self { layers, rest, shown: rest }
     }
 
-    /// Puts it where the robot stands. The first layer goes from there to what it plays in `frames` frames, and the others are not seen.
+    /// Puts it where the robot stands. The first layer goes from there to what it plays in `frames` frames, with weight, strength and mask
+    /// 1 again, and the others are not seen.
     /// Numbers that are not finite are ignored.
     pub fn start(&mut self, coordinates: [f32; N], frames: u16) {
         take(&mut self.shown, &coordinates);

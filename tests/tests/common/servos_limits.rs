@@ -93,7 +93,7 @@ pub fn rig() -> Rig<'static> {
 
 /// The last coordinates, steps and changes of steps, and the largest rates as shares of their bounds, less the rounding of a coordinate.
 pub struct Watch {
-    last: [[f64; 3]; SERVOS],
+    pub last: [[f64; 3]; SERVOS],
     pub most: [f64; 3],
 }
 
@@ -109,7 +109,7 @@ impl Watch {
             let x = f64::from(*x);
             let (step, change) = (x - last[0], x - last[0] - last[1]);
             // Half a unit in the last place of each coordinate that a difference is made of.
-            let ulp = f64::from(upper.max(-lower).max(0.5)) * f64::from(f32::EPSILON);
+            let ulp = f64::from(upper.max(-lower)) * f64::from(f32::EPSILON);
             let found = [(step, 1.0), (change, 2.0), (change - last[2], 4.0)];
             for ((most, (rate, ulps)), bound) in self.most.iter_mut().zip(found).zip(servos.rates(at)) {
                 *most = most.max((rate.abs() - ulps * ulp) / bound);
