@@ -110,7 +110,8 @@ impl<'p> Player<'p> {
         let on_rig = |source: &Source| source.on_rig(&self.rig, f64::from(self.pack.metadata().frame_rate));
         let source = on_rig(&clip.source)?;
         let target = clip.target.as_ref().map(on_rig).transpose()?;
-        let checked = &source.slice(0..CHECKED);
+        // The page reads poses, of a robot too.
+        let checked = &Clip { coordinates: None, ..source.slice(0..CHECKED) };
         let controls = Controls { strength: STRENGTH, ..Controls::default() };
         let played = (self.player.play)(&self.pack, &self.rig, checked, controls);
         let played = played.map_err(|error| ViewError::Pack { name: self.name.to_owned(), error })?;
