@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Recorded walks and waves on real robots, and a style trained on them. Prints the tables of docs/robot.md.
+# Recorded walks and waves on real robots, and a style trained on them. Prints the tables of docs/retarget.md.
 #
 # KINESIC_ROBOTS is a folder of descriptions as docs/robots.sh takes it, KINESIC_DATA the folder of clips. Neither is part of the repository.
 set -euo pipefail

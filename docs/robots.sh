@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Real robots: joints read, forward kinematics against an independent reader, and the pack of each. Prints the table of docs/robot.md.
+# Real robots: joints read, forward kinematics against an independent reader, and the pack of each. Prints the table of docs/robot-models.md.
 #
 # The descriptions are not part of the repository. KINESIC_ROBOTS is a folder with a git clone (or bare repository) of each, named as below
 # or as OWNER+NAME/repo; the commit is taken from it. Needs Python with mujoco and yourdfpy: pip install mujoco yourdfpy

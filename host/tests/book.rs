@@ -201,6 +201,8 @@ fn the_book_runs_as_written() {
         "moves",
         "player",
         "reachy-mini",
+        "retarget",
+        "body-limits",
     ];
     for page in pages {
         let [ran, _] = run(&format!("docs/{page}.md"));

@@ -38,7 +38,7 @@ pub trait Engine<const ROWS: usize> {
     type State: Default;
 
     /// True for an engine that stands where the machine does: in series it starts from the frame itself, not from what engines before it
-    /// make of it.
+    /// make of it. A tuple within a tuple starts as a whole from what is made.
     const STANDS: bool = false;
 
     /// Puts the state where it would be had `frame` always been held.

@@ -30,7 +30,8 @@
 //! stands is reached exactly, in the time of the fastest motion within the limits and two frames, without overshoot.
 //!
 //! The guarantees conflict only where the limits change while a joint moves (another pack, same state): then 1 wins over
-//! 2, and 2 over 3. Jerk then comes last, and a coordinate that is put back to a new bound stands there at once. Motion that is itself within the limits passes to rounding. Rates of the root's travel hold for the
+//! 2, and 2 over 3. With a jerk limit a new velocity or acceleration that is less than the coordinate's own is reached by its plan to stop, and a coordinate that is put back to
+//! a new bound stands there at once. Motion that is itself within the limits passes to rounding. Rates of the root's travel hold for the
 //! norm of its velocity and have no jerk limit; travel and heading have no position limits.
 
 mod axis;

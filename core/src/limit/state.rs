@@ -37,7 +37,7 @@ pub struct LimitReport {
 /// What a [`Limiter`](super::Limiter) remembers.
 pub type LimitState<const ROWS: usize> = LimitStateOf<ROWS, Plain>;
 
-/// What a [`SmoothLimiter`](super::SmoothLimiter) remembers; about four times as much.
+/// What a [`SmoothLimiter`](super::SmoothLimiter) remembers; two to three times as much.
 pub type SmoothLimitState<const ROWS: usize> = LimitStateOf<ROWS, Smooth>;
 
 /// What a running limiter remembers: where every coordinate is and how fast it goes.

@@ -41,7 +41,7 @@ A map names robot joints from the trunk outwards; skeleton joints by their own o
   l_wrist = { urdf = [\"l_wrist\"], lower = -0.5, upper = 0.5, velocity = 4.0, acceleration = 60.0, jerk = 2000.0 }
 More keys: jerk (rad/s^3; without it, no limit), forward, up (axes of the root link, x and z); zero = \"rest\"; unmapped = \"fixed\"; root_velocity, root_acceleration,
 heading_velocity, heading_acceleration, height, hold, decay; of a joint: kind (hinge, chain, ball, free), rest, bone. The page
-'Put it on a robot' explains them.")]
+'A body within a robot's limits' explains them.")]
 pub struct Args {
     /// A robot (.urdf), or a pack with limits (.kin)
     #[arg(value_name = "FILE")]

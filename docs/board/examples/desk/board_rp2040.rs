@@ -3,11 +3,9 @@
 use core::fmt;
 
 use super::registers::{change, read, start_systick, until, write};
-use super::robot::SERVOS;
+use super::robot::{RATE, SERVOS};
 
 const CLOCK: u32 = 125_000_000;
-/// Frames, and pulses, a second.
-const RATE: u32 = 50;
 const BAUD: u32 = 115_200;
 
 const RESETS_RESET: u32 = 0x4000_c000;

@@ -3,12 +3,10 @@
 use core::fmt;
 
 use super::registers::{change, read, start_systick, until, write};
-use super::robot::SERVOS;
+use super::robot::{RATE, SERVOS};
 
 /// The clock after reset. It is fast enough: nothing is set up.
 const CLOCK: u32 = 16_000_000;
-/// Frames, and pulses, a second.
-const RATE: u32 = 50;
 const BAUD: u32 = 115_200;
 
 const RCC_AHB1ENR: u32 = 0x4002_3830;

@@ -21,6 +21,9 @@ use robot::Robot;
 /// In flash, aligned, used in place.
 static PACK: &[u8] = kinesic::include_pack!("lively.kin");
 
+// The timer's rate is the move's and the pack's.
+const _: () = assert!(calm::FRAME_RATE == robot::RATE as f32);
+
 /// Frames that the timer has stepped. Only its interrupt writes it.
 static FRAMES: AtomicU32 = AtomicU32::new(0);
 

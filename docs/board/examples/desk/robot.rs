@@ -22,8 +22,11 @@ type State = PipelineState<(TranslatorState<ROWS, STATES>, LimitState<ROWS>), RO
 /// Where the robot is parked, rad. Hobby servos do not report; one that does is asked, and `Servos::coordinate` gives its angle.
 const PARKED: [f32; SERVOS] = [0.0; SERVOS];
 
+/// Frames a second: the pack's, the move's, and the timer's.
+pub const RATE: u32 = 50;
+
 /// Frames in which the robot comes from where it is parked into its move.
-const SECOND: u16 = 50;
+const SECOND: u16 = RATE as u16;
 
 /// The pack's tables, what they remember, and the player.
 pub struct Robot {
