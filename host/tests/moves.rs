@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use kinesic_host::moves::{Format, Moves, Options, Unit, is_moves, parse, read};
+use kinesic_host::robot::{Defaults, Machine, ServoTable};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 
@@ -223,4 +224,72 @@ fn members_of_the_first_record_alone_are_no_bomb() {
     assert!(error.contains("frame 0") && error.contains("4002"), "{error}");
     let nothing = of("a.csv", CSV).slice(0..0);
     assert_eq!(nothing.resample(50.0).unwrap().frames(), 0);
+}
+
+/// A robot of servos with these names, in degrees.
+fn robot(names: &[&str]) -> Machine {
+    let servo = |name: &&str| format!("[[servo]]\nname = {name:?}\nunit = \"deg\"\nmin = -90\nmax = 90\n");
+    let table = ServoTable::parse(&names.iter().map(servo).collect::<String>()).unwrap();
+    Machine::of_table(&table, 50.0, Defaults::default()).unwrap()
+}
+
+#[test]
+fn two_columns_for_one_joint_are_refused_with_both_names() {
+    let machine = robot(&["shoulder_pan"]);
+    for (name, text, first, second) in [
+        ("a.csv", "t,shoulder_pan_deg,Shoulder Pan_deg\n0,1,2\n1,2,3\n", "shoulder_pan_deg", "Shoulder Pan_deg"),
+        ("a.csv", "t,shoulder_pan_deg,shoulder_pan_rad\n0,1,2\n1,2,3\n", "shoulder_pan_deg", "shoulder_pan_rad"),
+        ("a.csv", "t,shoulder_pan,shoulder_pan_deg\n0,1,2\n1,2,3\n", "shoulder_pan", "shoulder_pan_deg"),
+        ("a.csv", "t,Shoulder Pan_rad,shoulder_pan_deg\n0,1,2\n1,2,3\n", "Shoulder Pan_rad", "shoulder_pan_deg"),
+        (
+            "a.json",
+            r#"{"fps": 50, "joints": {"shoulder_pan": [1, 2], "Shoulder-Pan": [1, 2]}}"#,
+            "Shoulder-Pan",
+            "shoulder_pan",
+        ),
+    ] {
+        let error = machine.clip(&of(name, text), Some(Unit::Degrees)).expect_err(text).to_string();
+        let expected = "joint 'shoulder_pan': found two columns for it";
+        assert!(error.contains(expected) && error.contains("expected one"), "{text}: {error}");
+        assert!([first, second].iter().all(|name| error.contains(&format!("'{name}'"))), "{text}: {error}");
+    }
+    // Joints that are told apart by what people leave out keep their own columns.
+    let machine = robot(&["joint_11", "joint_1_1"]);
+    let clip = machine.clip(&of("a.csv", "t,joint_1_1_deg,joint_11_deg\n0,1,2\n1,2,3\n"), None).unwrap();
+    assert!((clip.coordinates(0).unwrap()[0] - 2f64.to_radians()).abs() < 1e-6);
+}
+
+#[test]
+fn times_in_another_unit_are_asked_about() {
+    let notes = |name: &str, text: &str| of(name, text).notes.join(" ");
+    for (head, step, words) in [
+        ("t", 20.0, "0.05 frames a second: are its times milliseconds? Name the column time_ms."),
+        ("t", 20_000.0, "0.00005 frames a second: are its times microseconds? Name the column time_us."),
+        ("time_ms", 0.02, "50000 frames a second: are its times seconds? Name the column time_s."),
+        ("t", 0.02, ""),
+        ("time_ms", 20.0, ""),
+    ] {
+        let rows: String = (0..4).map(|frame| format!("{},1\n", f64::from(frame) * step)).collect();
+        assert_eq!(notes("a.csv", &format!("{head},pan_deg\n{rows}")), words);
+    }
+    let json = r#"{"times": [0, 20, 40], "joints": {"pan_deg": [1, 2, 3]}}"#;
+    assert_eq!(notes("a.json", json), "0.05 frames a second: are its times milliseconds? Give them in seconds.");
+}
+
+#[test]
+fn what_a_format_cannot_hold_is_refused_with_file_joint_and_unit() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("out.json");
+    let mut moves = of("g.json", REACHY);
+    moves.channels[6].unit = Some(Unit::Degrees);
+    let error = moves.write(&path).unwrap_err().to_string();
+    assert!(error.contains("out.json: joint 'right_antenna': found it in deg, expected rad"), "{error}");
+    moves.channels[6].name = "ear".into();
+    let error = moves.write(&path).unwrap_err().to_string();
+    assert!(error.contains("out.json: found no joint 'right_antenna', expected it in rad"), "{error}");
+    moves.channels[6].unit = Some(Unit::Ticks);
+    let error = moves.write(&folder.path().join("out.yaml")).unwrap_err().to_string();
+    assert!(error.contains("out.yaml: joint 'ear' is in ticks"), "{error}");
+    let error = read(&folder.path().join("gone.csv"), &Options::default()).unwrap_err().to_string();
+    assert!(error.contains("gone.csv") && !error.starts_with(':'), "{error}");
 }

@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::{Channel, Extra, Format, Moves, MovesError, Options, Unit, unit_name};
+use super::{Channel, Extra, Format, Moves, MovesError, Options, Unit, rate, unit_name};
 
 /// Angles beyond this are no radians: two turns.
 const TURNS: f64 = 4.0 * std::f64::consts::PI;
@@ -47,6 +47,9 @@ impl Draft {
             ));
         }
         let times = self.clock(frames, options)?;
+        if self.times.is_some() {
+            self.notes.extend(odd_clock(&times, self.format));
+        }
         for (index, channel) in self.channels.iter().enumerate().filter(|(_, c)| c.unit == Some(Unit::Radians)) {
             let values = self.values.iter().skip(index).step_by(self.channels.len());
             if let Some((frame, value)) = values.enumerate().find(|(_, value)| value.abs() > TURNS) {
@@ -101,6 +104,33 @@ impl Draft {
         }
         Ok(times.iter().map(|time| time - first).collect())
     }
+}
+
+/// Frames a second that are hardly meant: what the times may count instead.
+fn odd_clock(times: &[f64], format: Format) -> Option<String> {
+    let fps = rate(times);
+    let (word, column) = match 1.0 / fps {
+        _ if fps > 2000.0 => ("seconds", "time_s"),
+        step if step > 1e6 => ("nanoseconds", "time_ns"),
+        step if step > 1e3 => ("microseconds", "time_us"),
+        _ if fps < 2.0 => ("milliseconds", "time_ms"),
+        _ => return None,
+    };
+    let say = match format {
+        Format::Csv | Format::Records | Format::JsonLines => format!("Name the column {column}"),
+        _ => "Give them in seconds".to_owned(),
+    };
+    Some(format!(
+        "{} frames a second: are its times {word}? {say}.",
+        if fps < 2.0 { short(fps) } else { format!("{fps:.0}") }
+    ))
+}
+
+/// Two digits that count.
+fn short(x: f64) -> String {
+    let places = (1.0 - x.log10().floor()).clamp(0.0, 12.0) as usize;
+    let text = format!("{x:.places$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
 /// Seconds in one of what a name of times counts; `None` for a name of no time.

@@ -2,7 +2,7 @@
 
 /// Where, what was found and expected, and what to do about it.
 #[derive(Clone, Debug, PartialEq, thiserror::Error, miette::Diagnostic)]
-#[error("{place}: {what}")]
+#[error("{place}{}{what}", if place.is_empty() { "" } else { ": " })]
 pub struct MovesError {
     /// File, then line and column, joint or frame.
     pub place: String,

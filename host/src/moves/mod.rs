@@ -111,7 +111,7 @@ pub struct Summary {
 pub struct ChannelSummary {
     /// Its name.
     pub name: String,
-    /// Its unit, where the file says it.
+    /// Its unit, where the file says it, or what a robot takes it for.
     pub unit: Option<&'static str>,
     /// Least value.
     pub min: f64,
@@ -148,12 +148,7 @@ impl Moves {
 
     /// Frames per second: of the median distance between frames.
     pub fn fps(&self) -> f64 {
-        let mut steps: Vec<f64> = self.times.windows(2).map(|pair| pair[1] - pair[0]).collect();
-        steps.sort_by(f64::total_cmp);
-        let step = steps.get(steps.len() / 2).copied().unwrap_or(1.0);
-        let fps = 1.0 / step;
-        // Times are written with few digits: 49.9998 is meant to be 50.
-        if (fps - fps.round()).abs() < 2e-3 * fps && fps >= 1.0 { fps.round() } else { fps }
+        rate(&self.times)
     }
 
     /// Whether every frame is where an even clock would have it, within a fiftieth of a frame for each second.
@@ -220,4 +215,14 @@ impl Moves {
             notes: self.notes.clone(),
         }
     }
+}
+
+/// Frames per second of times: of the median distance between them.
+fn rate(times: &[f64]) -> f64 {
+    let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    steps.sort_by(f64::total_cmp);
+    let step = steps.get(steps.len() / 2).copied().unwrap_or(1.0);
+    let fps = 1.0 / step;
+    // Times are written with few digits: 49.9998 is meant to be 50.
+    if (fps - fps.round()).abs() < 2e-3 * fps && fps >= 1.0 { fps.round() } else { fps }
 }

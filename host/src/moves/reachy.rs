@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 
 use super::build::Draft;
 use super::json::{bounded, finite};
-use super::{Channel, Extra, Format, Moves, MovesError, Options, Unit};
+use super::{Channel, Extra, Format, Moves, MovesError, Options, Unit, unit_name};
 
 /// The channels, in order.
 pub(super) const CHANNELS: [(&str, Unit); 9] = [
@@ -122,12 +122,29 @@ fn head(value: &Value, place: impl Fn() -> String) -> Result<([f64; 3], Rotation
     Ok(([x, y, z], Rotation3::from_matrix_eps(&rotation, 1e-15, 100, Rotation3::from_matrix_unchecked(rotation))))
 }
 
-/// Writes a move; `None` where a channel of it is missing. Angles must be rad, lengths m.
-pub(super) fn write(moves: &Moves) -> Option<Value> {
-    let unit = |at: usize, unit: Unit| moves.channels[at].unit.is_none_or(|own| own == unit);
-    let columns: Option<Vec<usize>> =
-        CHANNELS.iter().map(|(name, own)| moves.find(name).filter(|at| unit(*at, *own))).collect();
-    let columns = columns?;
+/// Writes a move. Angles must be rad, lengths m; a joint that is missing, or in another unit, is named.
+pub(super) fn write(moves: &Moves) -> Result<Value, MovesError> {
+    let mut columns = [0; 9];
+    for (column, (name, own)) in columns.iter_mut().zip(CHANNELS) {
+        let found = match moves.find(name) {
+            None => {
+                format!("found no joint '{name}', expected it in {}, as a move of Reachy Mini has it", unit_name(own))
+            }
+            Some(at) => match moves.channels[at].unit {
+                Some(unit) if unit != own => format!(
+                    "joint '{name}': found it in {}, expected {}, as a move of Reachy Mini has it",
+                    unit_name(unit),
+                    unit_name(own)
+                ),
+                _ => {
+                    *column = at;
+                    continue;
+                }
+            },
+        };
+        let help = "write .csv, or take a robot whose head, antennas and body_yaw are in m and rad";
+        return Err(MovesError::new("", found, help));
+    }
     let target = |frame: usize| {
         let row = moves.frame(frame);
         let [x, y, z, roll, pitch, yaw, right, left, body]: [f64; 9] = std::array::from_fn(|at| row[columns[at]]);
@@ -146,5 +163,5 @@ pub(super) fn write(moves: &Moves) -> Option<Value> {
     let mut whole = moves.extra.fields.clone();
     whole.insert("time".into(), json!(moves.times));
     whole.insert("set_target_data".into(), (0..moves.frames()).map(target).collect());
-    Some(Value::Object(whole))
+    Ok(Value::Object(whole))
 }

@@ -14,13 +14,15 @@ impl Moves {
     /// that was read from JSON keeps its flavour, moves of Reachy Mini among them.
     pub fn write(&self, path: &Path) -> Result<(), MovesError> {
         let extension = path.extension().and_then(|found| found.to_str()).unwrap_or("").to_lowercase();
+        let in_file = |error: MovesError| error.in_file(path);
         let text = match extension.as_str() {
             "csv" => self.to_csv(),
-            "json" => self.to_json()?,
+            "json" => self.to_json().map_err(in_file)?,
             "jsonl" | "ndjson" => self.to_lines(),
             "yaml" | "yml" => {
-                let whole = trajectory::write(self)?;
-                serde_norway::to_string(&whole).map_err(|error| MovesError::new("", error.to_string(), "write .csv"))?
+                let whole = trajectory::write(self).map_err(in_file)?;
+                serde_norway::to_string(&whole)
+                    .map_err(|error| in_file(MovesError::new("", error.to_string(), "write .csv")))?
             }
             _ => {
                 let help = format!("name it {}", path.with_extension("csv").display());
@@ -59,10 +61,7 @@ impl Moves {
     /// JSON in the flavour that the motion came in, else by joint name.
     fn to_json(&self) -> Result<String, MovesError> {
         let whole = match self.format {
-            Format::Reachy => reachy::write(self).ok_or_else(|| {
-                let what = "found other joints or units than a move of Reachy Mini has";
-                MovesError::new("", what, "write .csv, or a robot with head_x ... head_yaw, right_antenna, left_antenna, body_yaw in m and rad")
-            })?,
+            Format::Reachy => reachy::write(self)?,
             Format::Records => (0..self.frames()).map(|frame| self.record(frame)).collect(),
             _ => self.columns(),
         };

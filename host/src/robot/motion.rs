@@ -37,6 +37,18 @@ pub enum MotionError {
         /// What there is.
         columns: String,
     },
+    /// Two columns for one joint.
+    #[error(
+        "joint '{joint}': found two columns for it, '{first}' and '{second}', expected one: take the other out, or give it another name"
+    )]
+    Twice {
+        /// Which joint.
+        joint: String,
+        /// A column.
+        first: String,
+        /// Another.
+        second: String,
+    },
     /// A unit that the joint cannot have.
     #[error("joint '{joint}': found {found}, expected {expected}")]
     Unit {
@@ -94,10 +106,7 @@ impl Machine {
         let mut assumed: Vec<String> = Vec::new();
         for (at, ((servo, column), range)) in self.servos.iter().zip(columns).zip(&ranges).enumerate() {
             let channel = &moves.channels[column];
-            let length = is_length(servo.unit);
-            // A trajectory of ROS is in rad and m, whatever the servo takes.
-            let ros = (moves.format == Format::Trajectory).then_some(if length { Unit::Metres } else { Unit::Radians });
-            let told = channel.unit.or(ros).or(angles.filter(|_| !length));
+            let told = told(servo, channel, moves.format, angles);
             if told.is_none() {
                 assumed.push(format!("{} ({})", servo.name, unit_name(servo.unit)));
             }
@@ -131,6 +140,15 @@ impl Machine {
         Ok(Clip { notes, ..self.rig.clip_of(&frames, 1.0 / moves.fps()) })
     }
 
+    /// The unit in which [`clip`](Self::clip) takes every channel; none of a channel that is no joint.
+    pub fn units(&self, moves: &Moves, angles: Option<Unit>) -> Result<Vec<Option<Unit>>, MotionError> {
+        let mut units: Vec<Option<Unit>> = moves.channels.iter().map(|channel| channel.unit).collect();
+        for (servo, column) in self.servos.iter().zip(self.columns(moves)?) {
+            units[column] = told(servo, &moves.channels[column], moves.format, angles).or(Some(servo.unit));
+        }
+        Ok(units)
+    }
+
     /// What the servos take, in their own units, frame by frame: the device's own arithmetic. With the extras of the motion that it was made
     /// of.
     pub fn moves(&self, clip: &Clip, from: Option<&Moves>) -> Moves {
@@ -150,12 +168,9 @@ impl Machine {
 
     /// The column of every servo.
     fn columns(&self, moves: &Moves) -> Result<Vec<usize>, MotionError> {
-        let column = |servo: &Servo| {
-            moves
-                .find(&servo.name)
-                .or_else(|| moves.channels.iter().position(|channel| same(&channel.name, &servo.name)))
-        };
-        let found: Vec<Option<usize>> = self.servos.iter().map(column).collect();
+        let names: Vec<&str> = self.servos.iter().map(|servo| servo.name.as_str()).collect();
+        let found: Vec<Option<usize>> =
+            names.iter().map(|name| column(name, &names, &moves.channels)).collect::<Result<_, _>>()?;
         if let Some(columns) = found.iter().copied().collect::<Option<Vec<usize>>>() {
             return Ok(columns);
         }
@@ -183,12 +198,12 @@ impl ServoTable {
     /// Takes the first frame of a motion, in the servos' own numbers, for their zeros: the robot stood at zero. `joints` are those that a
     /// servo turns; other columns are left alone.
     pub fn zero_from(&mut self, moves: &Moves, joints: &[&str]) -> Result<(), MotionError> {
-        for (channel, value) in
-            moves.channels.iter().zip(&moves.values).filter(|(c, _)| joints.contains(&c.name.as_str()))
-        {
-            let at = self.servos.iter().position(|servo| servo.name == channel.name);
+        for joint in joints {
+            let Some(column) = column(joint, joints, &moves.channels)? else { continue };
+            let (channel, value) = (&moves.channels[column], moves.values[column]);
+            let at = self.servos.iter().position(|servo| servo.name == *joint);
             let at = at.unwrap_or_else(|| {
-                self.servos.push(ServoEntry::named(&channel.name));
+                self.servos.push(ServoEntry::named(joint));
                 self.servos.len() - 1
             });
             let servo = &mut self.servos[at];
@@ -197,7 +212,7 @@ impl ServoTable {
                 let found = channel.unit.map_or("", unit_name).to_owned();
                 return Err(MotionError::Unit { joint: servo.name.clone(), found, expected: "the servo's own unit" });
             }
-            servo.zero = *value;
+            servo.zero = value;
         }
         Ok(())
     }
@@ -278,6 +293,37 @@ fn fits(
         ));
     }
     Ok(count)
+}
+
+/// The unit that the file, its format or the caller says.
+fn told(servo: &Servo, channel: &Channel, format: Format, angles: Option<Unit>) -> Option<Unit> {
+    let length = is_length(servo.unit);
+    // A trajectory of ROS is in rad and m, whatever the servo takes.
+    let ros = (format == Format::Trajectory).then_some(if length { Unit::Metres } else { Unit::Radians });
+    channel.unit.or(ros).or(angles.filter(|_| !length))
+}
+
+/// The column of a joint. A name that differs in case and separators only means it too, unless it is another joint's own.
+fn column(joint: &str, joints: &[&str], channels: &[Channel]) -> Result<Option<usize>, MotionError> {
+    let own = |name: &str| joints.iter().any(|other| *other == name && *other != joint);
+    let means = |channel: &Channel| {
+        let name = bare(channel);
+        channel.name == joint || same(name, joint) && !own(&channel.name) && !own(name)
+    };
+    let mut all = channels.iter().enumerate().filter(|(_, channel)| means(channel));
+    let first = all.next();
+    match (first, all.next()) {
+        (Some((_, first)), Some((_, second))) => {
+            Err(MotionError::Twice { joint: joint.to_owned(), first: first.header(), second: second.header() })
+        }
+        _ => Ok(first.map(|(at, _)| at)),
+    }
+}
+
+/// A channel's name without the unit that tells it from another of its name.
+fn bare(channel: &Channel) -> &str {
+    let unit = channel.unit.map(unit_name);
+    unit.and_then(|unit| channel.name.strip_suffix(unit)?.strip_suffix('_')).unwrap_or(&channel.name)
 }
 
 /// The same name, whatever its case and separators.
