@@ -295,7 +295,7 @@ fn a_description_becomes_a_machine_of_all_its_moving_joints() {
         "{:?}",
         machine.notes
     );
-    assert!(machine.notes.iter().any(|note| note.contains("yaw: no bounds")), "{:?}", machine.notes);
+    assert!(machine.notes.iter().any(|note| note.contains("no bounds are known for yaw")), "{:?}", machine.notes);
     // What is fixed is folded away: the pack's joints stand where the description's do, and turn about the same axes.
     let skeleton = &machine.rig.skeleton;
     let frames = robot.frames();

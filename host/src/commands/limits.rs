@@ -81,16 +81,16 @@ pub struct Args {
 /// A speed or an acceleration from the command line.
 pub fn rate(text: &str) -> Result<f64, String> {
     match text.parse() {
-        Ok(rate) if (1e-3..1e5).contains(&rate) => Ok(rate),
-        _ => Err("expected a number above 0".to_owned()),
+        Ok(rate) if (1e-3..=1e5).contains(&rate) => Ok(rate),
+        _ => Err("expected a number above 0, from 0.001 to 100000".to_owned()),
     }
 }
 
 /// A jerk from the command line.
 pub fn jerk(text: &str) -> Result<f64, String> {
     match text.parse() {
-        Ok(jerk) if jerk == 0.0 || (1e-3..1e9).contains(&jerk) => Ok(jerk),
-        _ => Err("expected a number above 0, or 0 for no limit".to_owned()),
+        Ok(jerk) if jerk == 0.0 || (1e-3..=1e9).contains(&jerk) => Ok(jerk),
+        _ => Err("expected a number above 0, from 0.001 to 1e9, or 0 for no limit".to_owned()),
     }
 }
 

@@ -6,21 +6,13 @@ use kinesic::rig::JointKind;
 use kinesic::servo::{NO_SERVO, Servos, Unit};
 use nalgebra::{UnitQuaternion, Vector3};
 
+use super::bounds::{Assumed, limit};
 use super::servos::{POSE, PoseEntry, ServoEntry, ServoTable};
 use super::{Motion, Robot, RobotError};
 use crate::clip::{Joint, Skeleton};
 use crate::limit::{JointLimit, LimitsModel};
 use crate::pack::{PackWriter, Provenance};
 use crate::rig::{MAX_JOINTS, Rig, RigError};
-
-/// A coordinate without bounds goes so far, rad or m: 15 turns either way.
-const UNLIMITED: f64 = 100.0;
-
-/// A servo without a given acceleration reaches its full speed in this time, s.
-const START: f64 = 0.2;
-
-/// Speed of a joint for which nobody gives one, rad/s (a turn per second) and m/s.
-const SPEED: [f64; 2] = [std::f64::consts::TAU, 0.5];
 
 /// Length of a bone that shows a leaf in pictures, m.
 const TIP: f64 = 0.08;
@@ -67,17 +59,17 @@ pub struct Defaults {
 }
 
 /// One joint on its way into a machine.
-struct Part {
-    joint: Joint,
+pub(super) struct Part {
+    pub joint: Joint,
     /// Rotation in its parent's frame where the coordinate is 0.
-    reference: UnitQuaternion<f64>,
-    axis: Vector3<f64>,
-    kind: JointKind,
-    bounds: [Option<f64>; 2],
-    speed: Option<f64>,
-    servo: ServoEntry,
+    pub reference: UnitQuaternion<f64>,
+    pub axis: Vector3<f64>,
+    pub kind: JointKind,
+    pub bounds: [Option<f64>; 2],
+    pub speed: Option<f64>,
+    pub servo: ServoEntry,
     /// A virtual joint has no servo.
-    has_servo: bool,
+    pub has_servo: bool,
 }
 
 impl Machine {
@@ -118,6 +110,7 @@ impl Machine {
                 let what = "found a joint that does not move by itself, expected one that a servo turns";
                 return Err(RobotError::new(format!("[[servo]] '{}'", joint.name), what, "take it out of the table"));
             }
+            notes.extend(known.and_then(unused));
             let limited = joint.motion != Motion::Continuous;
             parts.push(Part {
                 joint: Joint {
@@ -207,6 +200,7 @@ impl Machine {
         mut notes: Vec<String>,
     ) -> Result<Self, RobotError> {
         poses.iter().for_each(|pose| virtual_joints(&mut parts, pose));
+        named_once(&parts)?;
         if parts.iter().all(|part| part.kind == JointKind::Fixed) {
             return Err(RobotError::new("the robot", "found no joint that moves", "is this the right file?"));
         }
@@ -222,9 +216,9 @@ impl Machine {
                 part.joint.end = Some(across.cross(&part.axis).normalize() * TIP);
             }
         }
-        let (mut joints, mut servos) = (Vec::new(), Vec::new());
+        let (mut joints, mut servos, mut assumed) = (Vec::new(), Vec::new(), Assumed::default());
         for part in &parts {
-            let limit = limit(part, defaults, &mut notes)?;
+            let limit = limit(part, fps, defaults, &mut assumed)?;
             if part.kind != JointKind::Fixed {
                 let slider = part.kind == JointKind::Slider;
                 let otherwise = if slider { Unit::Metres } else { Unit::Radians };
@@ -238,6 +232,7 @@ impl Machine {
             }
             joints.push(limit);
         }
+        notes.extend(assumed.notes());
         numbered(&parts, &mut servos, &mut notes);
         let skeleton = Skeleton { joints: parts.into_iter().map(|part| part.joint).collect() };
         let coordinates: Vec<_> = joints.iter().map(|limit: &JointLimit| limit.coordinates).collect();
@@ -372,6 +367,29 @@ fn virtual_joints(parts: &mut Vec<Part>, pose: &PoseEntry) {
     }
 }
 
+/// Says which keys of a servo mean nothing beside a description.
+fn unused(servo: &ServoEntry) -> Option<String> {
+    let given = [servo.parent.is_some(), servo.offset.is_some(), servo.axis.is_some()];
+    let names = ["parent", "offset", "axis"].into_iter().zip(given).filter(|(_, given)| *given);
+    let names: Vec<&str> = names.map(|(name, _)| name).collect();
+    let list = names.join(", ");
+    (!names.is_empty()).then(|| format!("{}: {list} of its servo: not used, the description says it", servo.name))
+}
+
+/// Refuses two coordinates of one name: a pose's may be those of a joint, or of another pose.
+fn named_once(parts: &[Part]) -> Result<(), RobotError> {
+    let moving = || parts.iter().filter(|part| part.kind != JointKind::Fixed);
+    let mut known = std::collections::HashSet::new();
+    let Some(twin) = moving().find(|part| !known.insert(part.joint.name.as_str())) else { return Ok(()) };
+    let other = moving().find(|part| part.joint.name == twin.joint.name).filter(|part| !part.has_servo);
+    let whose = match other {
+        Some(pose) => format!("a coordinate of another [[pose]] '{}'", pose.servo.name),
+        None => "the name of a joint".to_owned(),
+    };
+    let what = format!("found '{}', which is {whose} already, expected names of its own", twin.joint.name);
+    Err(RobotError::new(format!("[[pose]] '{}'", twin.servo.name), what, "give the pose another name"))
+}
+
 /// Servos without an id are numbered in order, past those that have one.
 fn numbered(parts: &[Part], servos: &mut [Servo], notes: &mut Vec<String>) {
     let used: Vec<u16> = servos.iter().filter_map(|servo| servo.id).collect();
@@ -389,56 +407,4 @@ fn numbered(parts: &[Part], servos: &mut [Servo], notes: &mut Vec<String>) {
             "{given} servos have no id, and are numbered in order: give ids in a table of servos (--servos)"
         ));
     }
-}
-
-/// What one joint may do. The table's bounds are kept beside the description's, the tighter of the two.
-fn limit(part: &Part, defaults: Defaults, notes: &mut Vec<String>) -> Result<JointLimit, RobotError> {
-    let coordinates = |limit: JointLimit| JointLimit {
-        coordinates: crate::rig::JointCoordinates {
-            reference: part.reference.coords.map(|x| x as f32).into(),
-            ..limit.coordinates
-        },
-        ..limit
-    };
-    if part.kind == JointKind::Fixed {
-        return Ok(coordinates(JointLimit::fixed()));
-    }
-    let (name, servo, slider) = (&part.joint.name, &part.servo, part.kind == JointKind::Slider);
-    let scale = servo.scale(slider)?;
-    let own = |value: Option<f64>| value.map(|value| (value - servo.zero) / scale);
-    let (mut least, mut most) = (own(servo.min), own(servo.max));
-    if scale < 0.0 {
-        std::mem::swap(&mut least, &mut most);
-    }
-    let [low, high] = part.bounds;
-    let known = [low, high, least, most].iter().any(Option::is_some);
-    let lower = low.unwrap_or(-UNLIMITED).max(least.unwrap_or(-UNLIMITED)).max(-UNLIMITED);
-    let upper = high.unwrap_or(UNLIMITED).min(most.unwrap_or(UNLIMITED)).min(UNLIMITED);
-    if lower > upper {
-        let what = format!("found bounds {lower:.4} and {upper:.4}, expected the lower one first");
-        return Err(RobotError::new(format!("joint '{name}'"), what, "correct <limit>, or min and max of its servo"));
-    }
-    if !known {
-        notes.push(format!(
-            "{name}: no bounds are known; it is kept within {UNLIMITED} {}",
-            if slider { "m" } else { "rad" }
-        ));
-    }
-    let per_second = |value: Option<f64>| value.map(|value| value / scale.abs());
-    let speed = [per_second(servo.speed), part.speed].into_iter().flatten().reduce(f64::min);
-    let speed = speed.or(defaults.velocity).unwrap_or_else(|| {
-        notes.push(format!("{name}: no speed is known; {:.2} is assumed (--velocity)", SPEED[usize::from(slider)]));
-        SPEED[usize::from(slider)]
-    });
-    let acceleration = per_second(servo.acceleration).or(defaults.acceleration).unwrap_or_else(|| {
-        notes.push(format!("{name}: no acceleration is known; full speed in {START} s is assumed (--acceleration)"));
-        speed / START
-    });
-    let rest = own(servo.rest).unwrap_or(0.0).clamp(lower, upper);
-    let axis = part.axis.map(|x| x as f32).into();
-    let mut limit = JointLimit::hinge(axis, [lower as f32, upper as f32], speed as f32, acceleration as f32)
-        .with_jerk(per_second(servo.jerk).or(defaults.jerk).unwrap_or(0.0) as f32);
-    limit.coordinates.kind = part.kind;
-    limit.rest[0] = (rest as f32).clamp(limit.lower[0], limit.upper[0]);
-    Ok(coordinates(limit))
 }

@@ -7,11 +7,13 @@
 //! | `mjcf` | the same from an MJCF (MuJoCo) |
 //! | `servos` | [`ServoTable`]: ids, units, zeros, bounds of servos |
 //! | `machine` | [`Machine`]: a robot as packs hold it: rig, limits, servos |
+//! | `bounds` | what one joint of a machine may do, checked |
 //! | `packed` | the robot of a pack as a [`Robot`] |
 //! | `retarget` | a person's motion on a robot, within its limits |
 //! | `motion` | a motion in the numbers of a file -> coordinates -> what the servos take |
 //! | `error` | [`RobotError`]: place, what was found, what to do |
 
+mod bounds;
 mod description;
 mod error;
 mod machine;

@@ -31,7 +31,7 @@ pub struct ServoEntry {
     pub speed: Option<f64>,
     /// Largest acceleration, per second squared.
     pub acceleration: Option<f64>,
-    /// Largest jerk, per second cubed; none for no limit.
+    /// Largest jerk, per second cubed; 0 for no limit.
     pub jerk: Option<f64>,
     /// Value at rest.
     pub rest: Option<f64>,
@@ -56,7 +56,7 @@ pub struct PoseEntry {
     pub speed: Option<f64>,
     /// Largest accelerations, m/s^2 and rad/s^2.
     pub acceleration: Option<f64>,
-    /// Largest jerks, m/s^3 and rad/s^3; none for no limit.
+    /// Largest jerks, m/s^3 and rad/s^3; 0 for no limit.
     pub jerk: Option<f64>,
 }
 
@@ -94,6 +94,13 @@ const SERVO: [&str; 15] = [
 ];
 const POSE_KEYS: [&str; 6] = ["name", "min", "max", "speed", "acceleration", "jerk"];
 const SAMPLE: &str = "as in  [[servo]]  name = \"pan\"  id = 1  unit = \"deg\"  min = -90  max = 90";
+const POSE_SAMPLE: &str = "as in  [[pose]]  name = \"head\"  min = [-0.02, -0.02, -0.02, -0.7, -0.7, -3.1]  max = [0.02, 0.02, 0.02, 0.7, 0.7, 3.1]";
+
+/// A number of the table is at most so large.
+const LARGEST: f64 = 1e9;
+
+/// A pose goes no farther, m and rad: a little more than a turn.
+const FARTHEST: [f64; 2] = [10.0, 7.0];
 
 impl ServoTable {
     /// Reads the text of a table.
@@ -121,7 +128,13 @@ impl ServoTable {
         let name = match table.get("name") {
             None => None,
             Some(Value::String(name)) => Some(name.clone()),
-            Some(other) => return Err(RobotError::new("name", format!("found {other}, expected a text"), SAMPLE)),
+            Some(other) => {
+                return Err(RobotError::new(
+                    "name",
+                    format!("found {other}, expected a text"),
+                    "as in  name = \"desk robot\"",
+                ));
+            }
         };
         let servos = entries(&table, "servo")?.into_iter().map(|(place, table)| servo(&place, table));
         let poses = entries(&table, "pose")?.into_iter().map(|(place, table)| pose(&place, table));
@@ -151,11 +164,12 @@ impl ServoTable {
 
 /// The tables of an array, each with its place for messages.
 fn entries<'t>(table: &'t Table, key: &str) -> Result<Vec<(String, &'t Table)>, RobotError> {
+    let sample = if key == "pose" { POSE_SAMPLE } else { SAMPLE };
     let list = match table.get(key) {
         None => return Ok(Vec::new()),
         Some(Value::Array(list)) => list,
         Some(other) => {
-            return Err(RobotError::new(key, format!("found {other}, expected [[{key}]]"), SAMPLE));
+            return Err(RobotError::new(key, format!("found {other}, expected [[{key}]]"), sample));
         }
     };
     let entry = |(index, value): (usize, &'t Value)| match value {
@@ -164,7 +178,7 @@ fn entries<'t>(table: &'t Table, key: &str) -> Result<Vec<(String, &'t Table)>, 
             let name = entry.get("name").and_then(Value::as_str);
             Ok((name.map_or(number, |name| format!("[[{key}]] '{name}'")), entry))
         }
-        other => Err(RobotError::new(key, format!("found {other}, expected [[{key}]]"), SAMPLE)),
+        other => Err(RobotError::new(key, format!("found {other}, expected [[{key}]]"), sample)),
     };
     list.iter().enumerate().map(entry).collect()
 }
@@ -188,21 +202,59 @@ struct Keys<'t> {
 impl Keys<'_> {
     fn refuse<T>(&self, key: &str, expected: &str) -> Result<T, RobotError> {
         let found = self.table.get(key).map_or_else(|| "nothing".to_owned(), Value::to_string);
-        Err(RobotError::new(format!("{}, {key}", self.place), format!("found {found}, expected {expected}"), SAMPLE))
+        let what = format!("found {found}, expected {expected}");
+        Err(RobotError::new(format!("{}, {key}", self.place), what, self.sample(key)))
+    }
+
+    /// The key as it is written.
+    fn sample(&self, key: &str) -> String {
+        let pose = self.place.starts_with("[[pose]]");
+        let value = match key {
+            "name" if pose => return POSE_SAMPLE.to_owned(),
+            "min" | "max" if pose => return POSE_SAMPLE.to_owned(),
+            "speed" | "acceleration" | "jerk" if pose => "2.0, in m and rad, per second",
+            "name" => return SAMPLE.to_owned(),
+            "id" => "1",
+            "unit" => "\"deg\"",
+            "per_turn" => "4096",
+            "zero" => "2048, its value where the joint is at 0",
+            "sign" => "-1, where it counts the other way",
+            "min" => "-90, in its own unit",
+            "max" => "90, in its own unit",
+            "speed" => "300, in its own unit a second",
+            "acceleration" => "2000, in its own unit a second squared",
+            "jerk" => "40000, in its own unit a second cubed; 0 for no limit",
+            "rest" => "0, in its own unit",
+            "parent" => "\"pan\", the name of a servo before it",
+            "offset" => "[0, 0, 0.1], in m, Z up",
+            "axis" => "[0, 1, 0], Z up",
+            _ => return SAMPLE.to_owned(),
+        };
+        format!("as in  {key} = {value}")
     }
 
     fn number(&self, key: &str) -> Result<Option<f64>, RobotError> {
         let Some(value) = self.table.get(key) else { return Ok(None) };
         match value.as_float().or_else(|| value.as_integer().map(|x| x as f64)) {
-            Some(x) if x.is_finite() && x.abs() < 1e9 => Ok(Some(x)),
-            _ => self.refuse(key, "a number"),
+            Some(x) if x.is_finite() && x.abs() <= LARGEST => Ok(Some(x)),
+            _ => self.refuse(key, "a number from -1e9 to 1e9"),
         }
     }
 
     fn positive(&self, key: &str) -> Result<Option<f64>, RobotError> {
-        match self.number(key)? {
-            Some(x) if x <= 0.0 => self.refuse(key, "a number above 0"),
-            found => Ok(found),
+        self.above(key, |x| x > 0.0, "a number above 0, at most 1e9")
+    }
+
+    /// 0 stands for no limit.
+    fn jerk(&self) -> Result<Option<f64>, RobotError> {
+        self.above("jerk", |x| x >= 0.0, "0 for no limit, or a number above 0, at most 1e9")
+    }
+
+    fn above(&self, key: &str, allowed: fn(f64) -> bool, expected: &str) -> Result<Option<f64>, RobotError> {
+        let Some(value) = self.table.get(key) else { return Ok(None) };
+        match value.as_float().or_else(|| value.as_integer().map(|x| x as f64)) {
+            Some(x) if allowed(x) && x <= LARGEST => Ok(Some(x)),
+            _ => self.refuse(key, expected),
         }
     }
 
@@ -214,11 +266,17 @@ impl Keys<'_> {
         }
     }
 
+    fn six(&self, key: &str) -> Result<[f64; 6], RobotError> {
+        let expected = "six numbers: x, y, z in m, roll, pitch, yaw in rad";
+        let found = self.numbers(key).or_else(|_| self.refuse(key, expected))?;
+        found.map_or_else(|| self.refuse(key, expected), Ok)
+    }
+
     fn numbers<const N: usize>(&self, key: &str) -> Result<Option<[f64; N]>, RobotError> {
         let Some(value) = self.table.get(key) else { return Ok(None) };
         let number = |value: &Value| value.as_float().or_else(|| value.as_integer().map(|x| x as f64));
         let all: Option<Vec<f64>> = value.as_array().and_then(|list| list.iter().map(number).collect());
-        match all.and_then(|all| <[f64; N]>::try_from(all).ok()).filter(|all| all.iter().all(|x| x.abs() < 1e9)) {
+        match all.and_then(|all| <[f64; N]>::try_from(all).ok()).filter(|all| all.iter().all(|x| x.abs() <= LARGEST)) {
             Some(all) => Ok(Some(all)),
             None => self.refuse(key, &format!("{N} numbers")),
         }
@@ -244,6 +302,10 @@ fn servo(place: &str, table: &Table) -> Result<ServoEntry, RobotError> {
     let per_turn = keys.positive("per_turn")?;
     if unit.is_some_and(Unit::is_whole) && per_turn.is_none() {
         return keys.refuse("per_turn", "the ticks or microseconds of a whole turn, as in 4096");
+    }
+    if per_turn.is_some() && !unit.is_some_and(Unit::is_whole) {
+        let unit = unit.map_or_else(|| "no unit".to_owned(), |unit| format!("unit = \"{}\"", unit_name(unit)));
+        return keys.refuse("per_turn", &format!("it with unit = \"ticks\" or \"us\" only, and here is {unit}"));
     }
     let sign = match keys.number("sign")? {
         None => 1.0,
@@ -274,7 +336,7 @@ fn servo(place: &str, table: &Table) -> Result<ServoEntry, RobotError> {
         max,
         speed: keys.positive("speed")?,
         acceleration: keys.positive("acceleration")?,
-        jerk: keys.positive("jerk")?,
+        jerk: keys.jerk()?,
         rest: keys.number("rest")?,
         parent: keys.text("parent")?,
         offset: keys.numbers::<3>("offset")?.map(Vector3::from),
@@ -286,11 +348,17 @@ fn pose(place: &str, table: &Table) -> Result<PoseEntry, RobotError> {
     known(place, table, &POSE_KEYS)?;
     let keys = Keys { place, table };
     let Some(name) = keys.text("name")? else { return keys.refuse("name", "a name") };
-    let (Some(min), Some(max)) = (keys.numbers::<6>("min")?, keys.numbers::<6>("max")?) else {
-        return keys.refuse("min", "six numbers each for min and max: x, y, z in m, roll, pitch, yaw in rad");
-    };
+    let (min, max) = (keys.six("min")?, keys.six("max")?);
     if let Some(at) = (0..6).find(|at| min[*at] >= max[*at]) {
         return keys.refuse("max", &format!("more than min for {}", POSE[at]));
+    }
+    let far = |at: usize| FARTHEST[usize::from(at >= 3)];
+    for (key, values) in [("min", min), ("max", max)] {
+        if let Some(at) = (0..6).find(|at| values[*at].abs() > far(*at)) {
+            let unit = if at < 3 { "m" } else { "rad" };
+            let what = format!("found {} for {}, expected at most {} {unit}", values[at], POSE[at], far(at));
+            return Err(RobotError::new(format!("{place}, {key}"), what, "lengths are in m, angles in rad"));
+        }
     }
     Ok(PoseEntry {
         name,
@@ -298,7 +366,7 @@ fn pose(place: &str, table: &Table) -> Result<PoseEntry, RobotError> {
         max,
         speed: keys.positive("speed")?,
         acceleration: keys.positive("acceleration")?,
-        jerk: keys.positive("jerk")?,
+        jerk: keys.jerk()?,
     })
 }
 
