@@ -1,8 +1,10 @@
 //! Robots of MJCF and URDF: what is read, where its links are, what is refused.
 
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, FRAC_PI_3, FRAC_PI_4};
+use std::path::Path;
+use std::process::Command;
 
-use kinesic_host::robot::{Motion, Robot, RobotError};
+use kinesic_host::robot::{Defaults, Machine, Motion, Robot, RobotError, ServoTable};
 use nalgebra::{Isometry3, Vector3};
 
 /// A body with two arms at canted shoulders, a slider that another follows, and several joints in a body.
@@ -202,4 +204,217 @@ fn broken_descriptions_are_refused_with_line_and_joint() {
         let _ = Robot::parse(&MJCF[..end]);
         let _ = Robot::parse(&format!("{}{}", &MJCF[..end], &MJCF[(end + 7).min(MJCF.len())..]));
     }
+}
+
+/// A robot of one hinge `neck_yaw` and one slider `lift`.
+fn neck(bounds: &str) -> Robot {
+    Robot::parse(&format!(
+        r#"<robot name="neck"><link name="a"/><link name="b"/><link name="c"/>
+        <joint name="neck_yaw" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/><limit {bounds} velocity="2"/></joint>
+        <joint name="lift" type="prismatic"><parent link="b"/><child link="c"/><axis xyz="0 0 1"/><limit lower="0" upper="0.3" velocity="1"/></joint>
+        </robot>"#
+    ))
+    .unwrap()
+}
+
+const DEG: &str = "[[servo]]\nname = \"pan\"\nunit = \"deg\"\nmin = -90\nmax = 90\n";
+const HEAD: &str = "[[pose]]\nname = \"head\"\nmin = [-0.1, -0.1, -0.1, -1, -1, -1]\nmax = [0.1, 0.1, 0.1, 1, 1, 1]\n";
+
+fn table(text: &str, defaults: Defaults) -> Result<Machine, RobotError> {
+    Machine::of_table(&ServoTable::parse(text)?, 50.0, defaults)
+}
+
+#[test]
+fn names_of_coordinates_are_told_apart() {
+    let twice = |text: &str| table(text, Defaults::default()).unwrap_err();
+    says(
+        &twice(&format!("{}{HEAD}", DEG.replace("pan", "head_x"))),
+        &["[[pose]] 'head'", "'head_x'", "name of a joint"],
+    );
+    says(&twice(&format!("{HEAD}{HEAD}")), &["[[pose]] 'head'", "another [[pose]] 'head'"]);
+    let pose = ServoTable::parse(&HEAD.replace("head", "neck")).unwrap();
+    let robot = neck("lower=\"-1\" upper=\"1\"");
+    let error = Machine::of_robot(&robot, &pose, 50.0, Defaults::default()).unwrap_err();
+    says(&error, &["[[pose]] 'neck'", "'neck_yaw'", "name of a joint", "another name"]);
+    table(&format!("{DEG}{HEAD}"), Defaults::default()).unwrap();
+}
+
+#[test]
+fn bounds_are_not_cut_without_a_word() {
+    let refused = |text: &str| table(text, Defaults::default()).unwrap_err();
+    let rad = DEG.replace("deg", "rad").replace("90", "160");
+    says(&refused(&rad), &["[[servo]] 'pan', min", "found -160 rad", "at most 100 rad", "unit = \"deg\""]);
+    let mm = DEG.replace("deg", "m").replace("-90", "0").replace("90", "200");
+    says(&refused(&mm), &["[[servo]] 'pan', max", "found 200 m", "at most 100 m", "unit = \"mm\""]);
+    says(&refused(&format!("{DEG}rest = 120\n")), &["[[servo]] 'pan', rest", "found 120 deg", "expected -90 to 90"]);
+    says(&refused(&HEAD.replace("[0.1, 0.1", "[20, 0.1")), &["'head', max", "found 20 for x", "at most 10 m"]);
+    says(&refused(&HEAD.replace("-1, -1]", "-40, -1]")), &["'head', min", "found -40 for pitch", "angles in rad"]);
+    let notes = table(&format!("{DEG}zero = 200\n"), Defaults::default()).unwrap().notes.join(". ");
+    assert!(notes.contains("pan: its 0 is out of reach, zero = 200, min = -90, max = 90"), "{notes}");
+    // Of a description: refused, unless its table says better; bounds that stand for none are none.
+    let of = |bounds: &str, text: &str| {
+        let table = if text.is_empty() { ServoTable::default() } else { ServoTable::parse(text).unwrap() };
+        Machine::of_robot(&neck(bounds), &table, 50.0, Defaults::default())
+    };
+    let degrees = "lower=\"-137\" upper=\"1\"";
+    says(&of(degrees, "").unwrap_err(), &["joint 'neck_yaw'", "-137 rad", "at most 100 rad", "degrees"]);
+    let known = of(degrees, &DEG.replace("pan", "neck_yaw")).unwrap();
+    assert!((known.ranges()[0][0] + FRAC_PI_2).abs() < 1e-6);
+    assert_eq!(of("lower=\"-1e9\" upper=\"inf\"", "").unwrap().ranges()[0], [-100.0, 100.0]);
+}
+
+#[test]
+fn what_the_limiter_cannot_do_is_said_with_servo_value_and_range() {
+    let refused = |text: &str, defaults: Defaults| table(text, defaults).unwrap_err();
+    let none = Defaults::default();
+    says(
+        &refused(&format!("{DEG}speed = 1e-4\n"), none),
+        &["'pan', speed", "found 0.0001 deg/s", "50 frames a second"],
+    );
+    says(&refused(&format!("{DEG}acceleration = 1e-2\n"), none), &["'pan', acceleration", "found 0.01 deg/s^2"]);
+    says(
+        &refused(&format!("{DEG}jerk = 1\n"), none),
+        &["'pan', jerk", "found 1 deg/s^3", "expected 7.169 to", "0 for no limit"],
+    );
+    let jerk = Defaults { jerk: Some(0.1), ..none };
+    says(&refused(DEG, jerk), &["joint 'pan', jerk", "found 0.1 rad/s^3", "expected 0.1251 to", "--jerk", "--fps"]);
+    let slow = Defaults { velocity: Some(1000.0), acceleration: Some(1e4), jerk: Some(0.2) };
+    says(&refused(DEG, slow), &["joint 'pan', jerk", "a stop from full speed takes", "fewer than 10000"]);
+    says(&refused(&format!("{DEG}jerk = 1e12\n"), none), &["'pan', jerk", "at most 1e9", "0 for no limit"]);
+    says(&refused(&format!("{DEG}jerk = -1\n"), none), &["found -1", "0 for no limit"]);
+    // 0 is no limit, whatever the default.
+    let jerk = Defaults { jerk: Some(1000.0), ..none };
+    let machine = table(&format!("{DEG}jerk = 0\n{HEAD}jerk = 0.0\n"), jerk).unwrap();
+    assert!(machine.limits.joints.iter().all(|joint| joint.jerk == [0.0; 3]));
+}
+
+#[test]
+fn what_a_table_says_in_vain_is_said() {
+    let lift =
+        "[[servo]]\nname = \"lift\"\nunit = \"ticks\"\nper_turn = 4096\nparent = \"neck_yaw\"\naxis = [0, 0, 1]\n";
+    let robot = neck("lower=\"-1\" upper=\"1\"");
+    let machine = Machine::of_robot(&robot, &ServoTable::parse(lift).unwrap(), 50.0, Defaults::default()).unwrap();
+    let notes = machine.notes.join(". ");
+    for note in
+        ["lift: a slider; per_turn = 4096 is taken as 4096 ticks a metre", "lift: parent, axis of its servo: not used"]
+    {
+        assert!(notes.contains(note), "{notes}");
+    }
+    let error = ServoTable::parse(&format!("{DEG}per_turn = 4096\n")).unwrap_err();
+    says(&error, &["[[servo]] 'pan', per_turn", "found 4096", "ticks", "unit = \"deg\""]);
+    let error = ServoTable::parse(&DEG.replace("unit = \"deg\"", "per_turn = 4096")).unwrap_err();
+    says(&error, &["per_turn", "no unit"]);
+}
+
+#[test]
+fn help_shows_the_key_in_question() {
+    for (text, words) in [
+        (format!("{DEG}rest = \"up\"\n"), &["'pan', rest", "rest = 0"][..]),
+        (format!("{DEG}sign = 2\n"), &["sign = -1"]),
+        (format!("{DEG}axis = [0, 0]\n"), &["axis = [0, 1, 0]"]),
+        (HEAD.replace("max", "most"), &["'most'", "max"]),
+        (HEAD.replace("1, 1, 1]", "1, 1]"), &["[[pose]] 'head'", "six numbers", "as in  [[pose]]"]),
+        (HEAD.replace("name = \"head\"", "name = 3"), &["[[pose]]  name = \"head\""]),
+    ] {
+        says(&ServoTable::parse(&text).unwrap_err(), words);
+    }
+}
+
+/// What the command prints, its message where it fails.
+fn kinesic(folder: &Path, line: &str) -> Result<String, String> {
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_kinesic")).args(line.split_whitespace()).current_dir(folder).output().unwrap();
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).replace('\u{2502}', " ");
+    let words = |text: String| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    if output.status.success() { Ok(words(text(&output.stdout))) } else { Err(words(text(&output.stderr))) }
+}
+
+/// A folder with a description of four hinges, of which the last follows, and a table of a head and two servos.
+fn made() -> tempfile::TempDir {
+    let joint = |name: &str, from: &str, to: &str, kind: &str, more: &str| {
+        format!(
+            r#"<link name="{to}"/><joint name="{name}" type="{kind}"><parent link="{from}"/><child link="{to}"/><axis xyz="0 0 1"/>{more}</joint>"#
+        )
+    };
+    let limit = r#"<limit lower="-1" upper="1" velocity="2"/>"#;
+    let urdf = [
+        joint("pan", "base", "a", "revolute", limit),
+        joint("tilt", "a", "b", "revolute", r#"<limit lower="-1" upper="1"/>"#),
+        joint("spin", "b", "c", "continuous", ""),
+        joint("plate", "c", "d", "fixed", ""),
+        joint("follower", "d", "e", "revolute", &format!(r#"{limit}<mimic joint="pan" multiplier="2"/>"#)),
+    ];
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    write("plain.urdf", &format!(r#"<robot name="plain"><link name="base"/>{}</robot>"#, urdf.concat()));
+    write("desk.toml", &format!("{DEG}{}{HEAD}", DEG.replace("pan", "lamp")));
+    write("arm.toml", &DEG.replace("pan", "shoulder"));
+    folder
+}
+
+#[test]
+fn an_import_says_what_it_counts_and_gathers_its_notes() {
+    let folder = made();
+    let at = folder.path();
+    let text = kinesic(at, "robot import desk.toml --out desk.kin").unwrap();
+    assert!(text.contains("8 coordinates: 2 servos, 1 pose, 50 frames"), "{text}");
+    let text = kinesic(at, "robot import plain.urdf --out plain.kin").unwrap();
+    assert!(text.contains("3 coordinates of 5 joints, 50 frames"), "{text}");
+    for note in [
+        "no speed is known for tilt, spin; 6.28 rad/s is assumed (--velocity)",
+        "no acceleration is known for pan, tilt, spin; full speed in 0.2 s is assumed (--acceleration)",
+        "no bounds are known for spin; it is kept within 100 rad",
+    ] {
+        assert!(text.contains(note), "{text}");
+    }
+}
+
+#[test]
+fn a_pack_of_another_robot_is_refused() {
+    let folder = made();
+    let at = folder.path();
+    kinesic(at, "robot import arm.toml --out arm.kin").unwrap();
+    let refused = kinesic(at, "robot retarget plain.urdf walk.bvh --robot arm.kin").unwrap_err();
+    for words in ["arm.kin: found no joint of plain.urdf in it", "expected a pack of the same robot"] {
+        assert!(refused.contains(words), "{refused}");
+    }
+    let refused = kinesic(at, "robot retarget arm.toml walk.bvh").unwrap_err();
+    assert!(refused.contains("kinesic robot import arm.toml --out arm.kin"), "{refused}");
+}
+
+#[test]
+fn values_that_do_nothing_are_refused_and_those_beyond_bounds_said() {
+    let folder = made();
+    let at = folder.path();
+    let refused = kinesic(at, "robot show plain.urdf --at follower=0.3").unwrap_err();
+    assert!(refused.contains("--at follower: it follows 'pan'") && refused.contains("--at pan=X"), "{refused}");
+    let refused = kinesic(at, "robot show plain.urdf --at plate=0.3").unwrap_err();
+    assert!(refused.contains("'fixed'"), "{refused}");
+    let text = kinesic(at, "robot show plain.urdf --at pan=9,spin=9").unwrap();
+    assert!(text.contains("note: pan = 9 is outside its bounds, -1.000 to 1.000"), "{text}");
+    assert!(!text.contains("spin = 9"), "{text}");
+}
+
+#[test]
+fn an_inspected_motion_shows_the_units_that_are_taken() {
+    let folder = made();
+    let at = folder.path();
+    std::fs::write(at.join("nounit.csv"), "t,shoulder,other\n0,10,1\n0.02,11,1\n").unwrap();
+    kinesic(at, "robot import arm.toml --out arm.kin").unwrap();
+    for options in ["", "--angles deg"] {
+        let text = kinesic(at, &format!("inspect nounit.csv --robot arm.kin {options}")).unwrap();
+        assert!(text.contains("shoulder deg") && text.contains("other ?"), "{text}");
+    }
+}
+
+#[test]
+fn a_zero_comes_from_one_column() {
+    let folder = made();
+    let at = folder.path();
+    std::fs::write(at.join("two.csv"), "t,shoulder_deg,Shoulder_deg\n0,10,1\n0.02,11,1\n").unwrap();
+    let refused = kinesic(at, "robot import arm.toml --zero-from two.csv --out arm.kin").unwrap_err();
+    assert!(refused.contains("two.csv: joint 'shoulder': found two columns"), "{refused}");
+    std::fs::write(at.join("one.csv"), "t,Shoulder_deg\n0,10\n0.02,11\n").unwrap();
+    let text = kinesic(at, "robot import arm.toml --zero-from one.csv --out arm.kin").unwrap();
+    assert!(text.contains("deg = 10 "), "{text}");
 }

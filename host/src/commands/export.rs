@@ -23,6 +23,7 @@ use super::output::{check_motion, check_output, print_json, write_motion, write_
 Examples:
   kinesic export walk.bvh --out walk.glb
   kinesic export walk.bvh --out walk-angles.csv
+  kinesic export nod.csv --robot desk.kin --out nod.json
   kinesic export --rust angry.kin --out src/pack.rs
   kinesic export --rust nod.csv --robot desk.kin --out src/nod.rs")]
 pub struct Args {
@@ -33,7 +34,8 @@ pub struct Args {
     /// robot's frame rate, rad and m
     #[arg(long)]
     rust: bool,
-    /// File to write: .bvh, .glb, .gltf or .csv for a clip, .rs with --rust
+    /// File to write: .bvh, .glb, .gltf or .csv for a clip; .csv, .json, .jsonl or .yaml for a robot's move, or .bvh, .glb, .gltf for pictures of
+    /// it; .rs with --rust
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
     /// Print one JSON object: out, bytes

@@ -7,7 +7,7 @@ use kinesic::model::{JointMeta, MAGIC, ModelMeta, VERSION};
 use kinesic_host::clip::{self, Clip, JointMap, ReadError};
 use kinesic_host::engines::known;
 use kinesic_host::files;
-use kinesic_host::moves::Summary;
+use kinesic_host::moves::{Summary, unit_name};
 use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_host::plain::line;
 use kinesic_host::rig::Rig;
@@ -95,12 +95,17 @@ struct MovesReport {
 fn moves(args: &Args, options: &clip::ReadOptions) -> miette::Result<()> {
     let found = kinesic_host::moves::read(&args.file, &options.moves)?;
     let mut robot = Vec::new();
+    let mut summary = found.summary();
     if let Some(machine) = &options.machine {
-        let clip = machine.clip(&found, options.angles).map_err(|error| miette!("{}: {error}", args.file.display()))?;
+        let refuse = |error| miette!("{}: {error}", args.file.display());
+        let clip = machine.clip(&found, options.angles).map_err(refuse)?;
+        for (channel, unit) in summary.channels.iter_mut().zip(machine.units(&found, options.angles).map_err(refuse)?) {
+            channel.unit = unit.map(unit_name);
+        }
         robot.push(format!("Fits the robot '{}': {} coordinates.", machine.name, machine.servos.len()));
         robot.extend(clip.notes.iter().skip(found.notes.len()).cloned());
     }
-    let report = MovesReport { file: args.file.display().to_string(), summary: found.summary(), robot };
+    let report = MovesReport { file: args.file.display().to_string(), summary, robot };
     if args.json {
         return print_json(&report);
     }

@@ -245,5 +245,12 @@ pub const CASES: &[(&str, &str)] = &[
     ("robot retarget robot.urdf walk.bvh --fps 0", "1 to 1000"),
     ("robot retarget robot.urdf walk.bvh --out o.txt", "is a .csv, .json, .jsonl or .yaml file"),
     ("robot retarget robot.urdf walk.bvh --out nowhere/o.csv", "does not exist"),
+    ("robot retarget servos.toml walk.bvh", "kinesic robot import servos.toml --out servos.kin"),
+    ("robot show servos.toml", "kinesic inspect servos.kin"),
+    ("robot show weary.kin", "kinesic inspect weary.kin"),
+    ("robot show robot.urdf --at gone=1", "no such joint"),
+    ("robot import servos.toml --out o.kin --jerk 1e10", "from 0.001 to 1e9"),
+    ("robot import servos.toml --out o.kin --acceleration 1e9", "from 0.001 to 100000"),
+    ("robot import servos.toml --out o.kin --jerk 0.1", "expected 0.1251 to"),
     ("robot retarget robot.urdf --suggest-map --out o.csv", "cannot be used"),
 ];

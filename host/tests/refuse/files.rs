@@ -174,6 +174,7 @@ pub fn make(folder: &Path) {
     map("robot-loop.urdf", &swap(robot, "<child link=\"b\"", "<child link=\"a\""));
     map("robot-free.urdf", &swap(robot, "<limit lower=\"-1\" upper=\"1\" velocity=\"3\"/>", ""));
     write("robot-binary.urdf", &[0xff, 0xfe, 0, 1]);
+    map("servos.toml", "[[servo]]\nname = \"pan\"\nunit = \"deg\"\nmin = -90\nmax = 90\n");
     map("robot-map.toml", "acceleration = 20\n[joints]\nhead = \"neck\"\n");
     std::fs::create_dir(folder.join("hollow")).unwrap();
     std::fs::create_dir(folder.join("taken.bvh")).unwrap();

@@ -40,9 +40,20 @@ A table of servos; numbers are in the servo's own unit (rad, deg, m, mm, ticks, 
   max = 3072
   speed = 3000              # per second
   acceleration = 20000      # per second squared
-  jerk = 400000             # per second cubed; without it, no limit
-More keys: rest; without a description: parent, offset (m), axis (Z up). A platform that its own firmware solves is a [[pose]]: name, min, max
-(six numbers each: x, y, z in m, roll, pitch, yaw in rad). The page 'Put it on a robot' explains them.")]
+  jerk = 400000             # per second cubed; without it, or at 0, no limit
+  rest = 2048               # where it rests; without it the joint's 0
+  [[servo]]
+  name = \"tilt\"
+  unit = \"deg\"
+  parent = \"pan\"            # without a description only: the servo before it that carries it,
+  offset = [0, 0, 0.1]      # where it sits on that, m, Z up,
+  axis = [0, 1, 0]          # and the axis about which it turns, or along which it slides; Z without it
+  [[pose]]                  # a platform that its own firmware solves: six coordinates, head_x ... head_yaw
+  name = \"head\"
+  min = [-0.02, -0.02, -0.02, -0.7, -0.7, -3.1]    # x, y, z in m, roll, pitch, yaw in rad
+  max = [0.02, 0.02, 0.02, 0.7, 0.7, 3.1]
+  speed = 2                 # m and rad, per second; acceleration and jerk as of a servo
+A slider with ticks or us takes per_turn as those of a metre. The page 'Put it on a robot' explains all keys.")]
 pub struct Args {
     /// A robot: .urdf, .xml (MJCF), or a table of servos .toml
     #[arg(value_name = "FILE")]
@@ -81,6 +92,12 @@ struct Summary {
     frame_rate: f64,
     /// Joints of the description, fixed ones and followers among them.
     described_joints: usize,
+    /// Servos of the table.
+    servos: usize,
+    /// Poses of the table.
+    poses: usize,
+    #[serde(skip)]
+    is_table: bool,
     coordinates: Vec<Coordinate>,
     notes: Vec<String>,
 }
@@ -89,7 +106,7 @@ struct Summary {
 pub fn run(args: &Args) -> miette::Result<()> {
     check_output(&args.out, "kin")?;
     let defaults = Defaults { velocity: args.velocity, acceleration: args.acceleration, jerk: args.jerk };
-    let is_table = args.file.extension().is_some_and(|found| found.eq_ignore_ascii_case("toml"));
+    let is_table = super::is_table(&args.file);
     let mut table = match (is_table, &args.servos) {
         (true, Some(other)) => {
             return Err(miette!(
@@ -141,6 +158,9 @@ pub fn run(args: &Args) -> miette::Result<()> {
         bytes: bytes.len(),
         frame_rate: args.fps,
         described_joints: described,
+        servos: table.servos.len(),
+        poses: table.poses.len(),
+        is_table,
         coordinates: table::coordinates(&machine),
         notes: machine.notes.clone(),
     };
@@ -166,12 +186,22 @@ fn print(summary: &Summary) {
     for note in &summary.notes {
         println!("note: {}", plain::line(note));
     }
+    let count = |count: usize, one: &str| match count {
+        0 => None,
+        1 => Some(format!("1 {one}")),
+        many => Some(format!("{many} {one}s")),
+    };
+    let (servos, joints, poses) =
+        (count(summary.servos, "servo"), count(summary.described_joints, "joint"), count(summary.poses, "pose"));
+    let from = match summary.is_table {
+        true => format!(": {}", [servos, poses].into_iter().flatten().collect::<Vec<_>>().join(", ")),
+        false => format!(" of {}", [joints, poses].into_iter().flatten().collect::<Vec<_>>().join(" and ")),
+    };
     println!(
-        "{}: {}, {} coordinates of {} joints, {} frames per second, {} bytes",
+        "{}: {}, {} coordinates{from}, {} frames per second, {} bytes",
         summary.out,
         plain::line(&summary.robot),
         summary.coordinates.len(),
-        summary.described_joints,
         summary.frame_rate,
         summary.bytes
     );

@@ -9,6 +9,7 @@ use kinesic_host::{files, plain};
 use miette::{IntoDiagnostic, WrapErr, miette};
 use serde::Serialize;
 
+use super::is_table;
 use crate::commands::clips::{self, Reading};
 use crate::commands::inspect::is_pack;
 use crate::commands::limits::frame_rate;
@@ -23,6 +24,7 @@ use crate::commands::print::raw;
 #[command(after_help = "\
 Examples:
   kinesic robot retarget robot.urdf --suggest-map > map.toml
+  kinesic robot retarget robot.urdf walk.bvh --map map.toml          # how well it goes, nothing is written
   kinesic robot retarget robot.urdf walk.bvh --map map.toml --out walk.csv
   kinesic robot retarget robot.urdf weary.bvh --map map.toml --robot robot.kin --fps 50 --out weary.csv --json
   kinesic train translate --robot robot.kin --pair walk.csv weary.csv --out weary.kin
@@ -64,7 +66,7 @@ pub struct Args {
     /// Frames per second (default: the clip's)
     #[arg(long, value_name = "RATE", value_parser = frame_rate, allow_negative_numbers = true)]
     fps: Option<f64>,
-    /// Motion to write: .csv, .json, .jsonl or .yaml; a column for every joint that leads, in rad or m
+    /// Motion to write: .csv, .json, .jsonl or .yaml; a column for every joint that leads, in rad or m (default: the report alone)
     #[arg(long, value_name = "MOVES")]
     out: Option<PathBuf>,
     /// Print the report as one JSON object
@@ -87,12 +89,34 @@ struct Summary {
 /// Runs the command.
 pub fn run(args: &Args) -> miette::Result<()> {
     args.out.as_deref().map_or(Ok(()), check_moves)?;
+    if is_table(&args.file) {
+        let (file, pack) = (args.file.display(), args.file.with_extension("kin"));
+        return Err(miette!(
+            help = format!(
+                "make a pack of it: kinesic robot import {file} --out {0}; then kinesic robot retarget {0}",
+                pack.display()
+            ),
+            "{file}: found a table of servos, expected a robot's description (.urdf, .xml) or its pack (.kin)"
+        ));
+    }
     let mut robot = match is_pack(&args.file) {
         true => Robot::of_machine(&clips::robot(&args.file)?),
         false => Robot::read(&args.file)?,
     };
     if let Some(pack) = &args.robot {
-        robot.keep(&clips::robot(pack)?);
+        let machine = clips::robot(pack)?;
+        if machine.servos.iter().all(|servo| robot.find(&servo.name).is_none()) {
+            return Err(miette!(
+                help = format!(
+                    "make its pack: kinesic robot import {} --out robot.kin; or leave --robot out",
+                    args.file.display()
+                ),
+                "{}: found no joint of {} in it, expected a pack of the same robot",
+                pack.display(),
+                args.file.display()
+            ));
+        }
+        robot.keep(&machine);
     }
     let Some(path) = args.clip.as_ref().filter(|_| !args.suggest_map) else {
         raw(&plain::text(&suggest(&robot).map_err(|error| error.in_file(&args.file))?));

@@ -4,10 +4,12 @@ use std::path::PathBuf;
 
 use kinesic_host::clip::map::nearest;
 use kinesic_host::plain;
-use kinesic_host::robot::Robot;
+use kinesic_host::robot::{Mimic, Motion, Robot};
 use miette::miette;
 use serde::Serialize;
 
+use super::is_table;
+use crate::commands::inspect::is_pack;
 use crate::commands::output::print_json;
 
 /// Show the joints of a robot's description, and where its links are
@@ -63,8 +65,26 @@ struct Joint {
 
 /// Runs the command.
 pub fn run(args: &Args) -> miette::Result<()> {
+    let file = args.file.display();
+    if is_pack(&args.file) {
+        return Err(miette!(
+            help = format!("kinesic inspect {file} shows the joints of a pack"),
+            "{file}: found a pack, expected a robot's description, .urdf or .xml (MJCF)"
+        ));
+    }
+    if is_table(&args.file) {
+        let pack = args.file.with_extension("kin");
+        let pack = pack.display();
+        return Err(miette!(
+            help = format!(
+                "make a pack of it, and look at that: kinesic robot import {file} --out {pack}; kinesic inspect {pack}"
+            ),
+            "{file}: found a table of servos, expected a robot's description, .urdf or .xml (MJCF)"
+        ));
+    }
     let robot = Robot::read(&args.file)?;
     let mut own = vec![0.0; robot.joints.len()];
+    let mut notes = robot.notes.clone();
     for entry in &args.at {
         let (name, value) = entry
             .split_once('=')
@@ -75,6 +95,27 @@ pub fn run(args: &Args) -> miette::Result<()> {
             let near = nearest(name, names).map_or(String::new(), |near| format!("; did you mean '{near}'?"));
             miette!("--at {name}: the robot has no such joint{near}")
         })?;
+        let joint = &robot.joints[at];
+        let leader = joint.mimic.as_ref().filter(|mimic| robot.find(&mimic.joint).is_some());
+        if let Some(Mimic { joint: leader, multiplier, offset }) = leader {
+            return Err(miette!(
+                help =
+                    format!("give the one that leads: --at {leader}=X; this one is then at {multiplier} X + {offset}"),
+                "--at {name}: it follows '{leader}', and has no value of its own"
+            ));
+        }
+        if matches!(joint.motion, Motion::Fixed | Motion::Other(_)) {
+            let help = "name a joint that turns or slides; kinesic robot show lists their kinds";
+            return Err(miette!(
+                help = help,
+                "--at {name}: found a joint of the kind '{}', which has no value",
+                joint.kind
+            ));
+        }
+        let [lower, upper] = [joint.lower.unwrap_or(f64::NEG_INFINITY), joint.upper.unwrap_or(f64::INFINITY)];
+        if joint.motion != Motion::Continuous && !(lower..=upper).contains(&value) {
+            notes.push(format!("{name} = {value} is outside its bounds, {lower:.3} to {upper:.3}"));
+        }
         own[at] = value;
     }
     let values = robot.followed(&own);
@@ -98,7 +139,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
         }
     };
     let joints = robot.depth_first().into_iter().map(joint).collect();
-    let report = Report { robot: robot.name.clone(), root: robot.root(), joints, notes: robot.notes.clone() };
+    let report = Report { robot: robot.name.clone(), root: robot.root(), joints, notes };
     if args.json {
         return print_json(&report);
     }
