@@ -277,7 +277,10 @@ fn what_the_limiter_cannot_do_is_said_with_servo_value_and_range() {
         &["'pan', jerk", "found 1 deg/s^3", "expected 7.169 to", "0 for no limit"],
     );
     let jerk = Defaults { jerk: Some(0.1), ..none };
-    says(&refused(DEG, jerk), &["joint 'pan', jerk", "found 0.1 rad/s^3", "expected 0.1251 to", "--jerk", "--fps"]);
+    says(
+        &refused(DEG, jerk),
+        &["joint 'pan', jerk", "found 0.1 rad/s^3", "expected 0.1251 to 1e9 rad", "--jerk", "--fps"],
+    );
     let slow = Defaults { velocity: Some(1000.0), acceleration: Some(1e4), jerk: Some(0.2) };
     says(&refused(DEG, slow), &["joint 'pan', jerk", "a stop from full speed takes", "fewer than 10000"]);
     says(&refused(&format!("{DEG}jerk = 1e12\n"), none), &["'pan', jerk", "at most 1e9", "0 for no limit"]);
@@ -417,4 +420,11 @@ fn a_zero_comes_from_one_column() {
     std::fs::write(at.join("one.csv"), "t,Shoulder_deg\n0,10\n0.02,11\n").unwrap();
     let text = kinesic(at, "robot import arm.toml --zero-from one.csv --out arm.kin").unwrap();
     assert!(text.contains("deg = 10 "), "{text}");
+    // Without a table servos take rad, whatever the columns are in.
+    std::fs::write(at.join("one.csv"), "t,pan_deg\n0,90\n0.02,91\n").unwrap();
+    let text = kinesic(at, "robot import plain.urdf --zero-from one.csv --out plain.kin").unwrap();
+    assert!(text.contains("rad = 1.5707964 "), "{text}");
+    std::fs::write(at.join("one.csv"), "t,pan_ticks\n0,90\n0.02,91\n").unwrap();
+    let refused = kinesic(at, "robot import plain.urdf --zero-from one.csv --out plain.kin").unwrap_err();
+    assert!(refused.contains("joint 'pan': found ticks, expected rad"), "{refused}");
 }

@@ -4,6 +4,7 @@ use kinesic::rig::JointKind;
 
 use super::RobotError;
 use super::machine::{Defaults, Part};
+use super::servos::LARGEST;
 use crate::limit::JointLimit;
 use crate::moves::unit_name;
 
@@ -21,6 +22,9 @@ const SPEED: [f64; 2] = [std::f64::consts::TAU, 0.5];
 
 /// What a frame may add to a place, a step and a change, rad or m: what the limiter can tell apart.
 const STEPS: std::ops::Range<f32> = 1e-6..1e6;
+
+/// A speed or an acceleration that stands in for others is at most so large.
+const FASTEST: f64 = 1e5;
 
 /// A stop takes fewer frames than this.
 const LONGEST_STOP: f32 = 1e4;
@@ -229,6 +233,7 @@ impl Limits<'_> {
             false => (format!("joint '{}', {key}", self.part.joint.name), 1.0, self.si()),
         };
         let [least, most] = [1.001e-6, 0.999e6].map(|step| scale * step * self.fps.powi(power));
+        let most = most.min(if by_table || power == 3 { LARGEST } else { FASTEST });
         let none = if power == 3 { ", or 0 for no limit" } else { "" };
         let what = format!(
             "found {} {unit}{per}, expected {} to {} {unit}{per} at {} frames a second{none}",
@@ -270,7 +275,9 @@ fn short(x: f64) -> String {
     }
     let size = x.abs().log10().floor() as i32;
     if !(-4..7).contains(&size) {
-        return format!("{x:.3e}");
+        let text = format!("{x:.3e}");
+        let (digits, power) = text.split_once('e').unwrap_or((&text, "0"));
+        return format!("{}e{power}", digits.trim_end_matches('0').trim_end_matches('.'));
     }
     let text = format!("{x:.*}", (3 - size).max(0) as usize);
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }

@@ -404,7 +404,12 @@ fn numbered(parts: &[Part], servos: &mut [Servo], notes: &mut Vec<String>) {
     }
     if given > 0 {
         notes.push(format!(
-            "{given} servos have no id, and are numbered in order: give ids in a table of servos (--servos)"
+            "{given} {}: give ids in a table of servos (--servos)",
+            if given == 1 {
+                "servo has no id, and gets the next one"
+            } else {
+                "servos have no id, and are numbered in order"
+            }
         ));
     }
 }

@@ -212,7 +212,20 @@ impl ServoTable {
                 let found = channel.unit.map_or("", unit_name).to_owned();
                 return Err(MotionError::Unit { joint: servo.name.clone(), found, expected: "the servo's own unit" });
             }
-            servo.zero = value;
+            // A servo without a unit takes rad or m.
+            servo.zero = match channel.unit.filter(|_| own.is_none()) {
+                Some(Unit::Degrees) => value.to_radians(),
+                Some(Unit::Millimetres) => 1e-3 * value,
+                Some(unit) if unit.is_whole() => {
+                    let (joint, found) = (servo.name.clone(), unit_name(unit).to_owned());
+                    return Err(MotionError::Unit {
+                        joint,
+                        found,
+                        expected: "rad, deg, m or mm, or a table with its unit",
+                    });
+                }
+                _ => value,
+            };
         }
         Ok(())
     }

@@ -97,7 +97,7 @@ const SAMPLE: &str = "as in  [[servo]]  name = \"pan\"  id = 1  unit = \"deg\"  
 const POSE_SAMPLE: &str = "as in  [[pose]]  name = \"head\"  min = [-0.02, -0.02, -0.02, -0.7, -0.7, -3.1]  max = [0.02, 0.02, 0.02, 0.7, 0.7, 3.1]";
 
 /// A number of the table is at most so large.
-const LARGEST: f64 = 1e9;
+pub(super) const LARGEST: f64 = 1e9;
 
 /// A pose goes no farther, m and rad: a little more than a turn.
 const FARTHEST: [f64; 2] = [10.0, 7.0];

@@ -47,12 +47,14 @@ A table of servos; numbers are in the servo's own unit (rad, deg, m, mm, ticks, 
   unit = \"deg\"
   parent = \"pan\"            # without a description only: the servo before it that carries it,
   offset = [0, 0, 0.1]      # where it sits on that, m, Z up,
-  axis = [0, 1, 0]          # and the axis about which it turns, or along which it slides; Z without it
-  [[pose]]                  # a platform that its own firmware solves: six coordinates, head_x ... head_yaw
+  axis = [0, 1, 0]          # and the axis about which it turns or along which it slides
+  [[pose]]                  # a platform that its own firmware solves: head_x ... head_yaw
   name = \"head\"
   min = [-0.02, -0.02, -0.02, -0.7, -0.7, -3.1]    # x, y, z in m, roll, pitch, yaw in rad
   max = [0.02, 0.02, 0.02, 0.7, 0.7, 3.1]
-  speed = 2                 # m and rad, per second; acceleration and jerk as of a servo
+  speed = 2                 # m and rad, per second
+  acceleration = 10         # per second squared
+  jerk = 100                # per second cubed; without it, or at 0, no limit
 A slider with ticks or us takes per_turn as those of a metre. The page 'Put it on a robot' explains all keys.")]
 pub struct Args {
     /// A robot: .urdf, .xml (MJCF), or a table of servos .toml
@@ -198,10 +200,10 @@ fn print(summary: &Summary) {
         false => format!(" of {}", [joints, poses].into_iter().flatten().collect::<Vec<_>>().join(" and ")),
     };
     println!(
-        "{}: {}, {} coordinates{from}, {} frames per second, {} bytes",
+        "{}: {}, {}{from}, {} frames per second, {} bytes",
         summary.out,
         plain::line(&summary.robot),
-        summary.coordinates.len(),
+        count(summary.coordinates.len(), "coordinate").unwrap_or_default(),
         summary.frame_rate,
         summary.bytes
     );

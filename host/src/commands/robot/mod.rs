@@ -13,11 +13,11 @@ use clap::Subcommand;
 #[derive(Debug, Subcommand)]
 #[command(after_help = "\
 Examples:
-  kinesic robot import desk.toml --out desk.kin                        # servos without a description
-  kinesic robot import arm.urdf --servos arm.toml --out arm.kin        # a description, and what its servos take
+  kinesic robot import desk.toml --out desk.kin                   # servos without a description
+  kinesic robot import arm.urdf --servos arm.toml --out arm.kin   # a description, and its servos
   kinesic robot show arm.urdf --at elbow=0.5
   kinesic robot retarget arm.urdf walk.bvh --robot arm.kin --out walk.csv
-  kinesic inspect arm.kin                                              # the joints of a pack")]
+  kinesic inspect arm.kin                                         # the joints of a pack")]
 pub enum Action {
     Import(import::Args),
     Show(show::Args),
