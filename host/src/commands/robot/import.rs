@@ -55,7 +55,7 @@ A table of servos; numbers are in the servo's own unit (rad, deg, m, mm, ticks, 
   speed = 2                 # m and rad, per second
   acceleration = 10         # per second squared
   jerk = 100                # per second cubed; without it, or at 0, no limit
-A slider with ticks or us takes per_turn as those of a metre. The page 'Put it on a robot' explains all keys.")]
+A slider with ticks or us takes per_turn as those of a metre. The page 'Describe a robot' explains all keys.")]
 pub struct Args {
     /// A robot: .urdf, .xml (MJCF), or a table of servos .toml
     #[arg(value_name = "FILE")]

@@ -40,7 +40,7 @@ A map says which joints or links of the robot are which limbs:
   [hold]
   jaw = 0.1                  # stays there, rad or m
 Limbs: torso, head; with l_ or r_: upper_arm, forearm, hand, thigh, shin, foot; arm (shoulder to wrist) and leg (hip to ankle), whose length
-counts too. The page 'Put it on a robot' explains them.")]
+counts too. The page 'From a person to a robot' explains them.")]
 pub struct Args {
     /// A robot: .urdf, .xml (MJCF), or a pack that `kinesic robot import` made
     #[arg(value_name = "ROBOT")]
