@@ -8,6 +8,7 @@ use std::path::Path;
 use std::process::Command;
 
 use kinesic::{Frame, LimitState, Limiter, Pipeline, PipelineState, Servos, Translator, TranslatorState};
+use kinesic_host::measure::{Measurable, compare_frames};
 use kinesic_host::moves::{self, Options};
 use kinesic_host::pack::PackFile;
 use kinesic_host::robot::{Defaults, Machine, Robot, ServoTable};
@@ -380,6 +381,13 @@ fn sliders_and_turns_are_played_as_they_are() {
     }
     // Almost five turns.
     assert!(moves.values.last().unwrap() > &1700.0);
+    // Evaluation sees sliders: 5 mm farther is 5 mm.
+    let mut far = moves.clone();
+    far.values.iter_mut().step_by(2).for_each(|lift| *lift += 5.0);
+    let take = |moves| Measurable::new(&machine.rig, &machine.clip(moves, None).unwrap());
+    let found = compare_frames(&machine.rig, &take(&moves), &take(&far)).degrees;
+    let of = |name: &str| found.joints.iter().find(|joint| joint.joint == name).unwrap().clone();
+    assert!((of("lift").millimetres.unwrap() - 5.0).abs() < 1e-3 && of("reel").millimetres.is_none(), "{found:?}");
 }
 
 #[test]

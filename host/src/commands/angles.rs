@@ -8,8 +8,7 @@ use kinesic_host::translate::Errors;
 pub type Columns<'a> = [(&'static str, Option<&'a Degrees>)];
 
 /// What the columns are of.
-pub const CAPTION: &str =
-    "mean angle between local rotations, degrees; the last model's as swing of the bone and twist about it";
+pub const CAPTION: &str = "mean angle between local rotations, degrees (of sliders: mm); the last model's as swing of the bone and twist about it";
 /// Heads of the last two columns.
 const SPLIT: [&str; 2] = ["swing", "twist"];
 /// What they are, for a report.
@@ -44,7 +43,15 @@ pub fn rows(columns: &Columns) -> Vec<(String, Vec<String>)> {
     let last = columns.iter().rev().find_map(|(_, degrees)| *degrees);
     for (index, joint) in last.map_or(&[][..], |degrees| &degrees.joints).iter().enumerate() {
         let (name, mut cells) = row(&joint.joint, &|d| d.joints.get(index).map(|joint| joint.angle));
-        cells.extend([joint.swing, joint.twist].map(|angle| format!("{angle:.2}")));
+        if joint.millimetres.is_some() {
+            let length = |degrees: &Degrees| degrees.joints.get(index).and_then(|joint| joint.millimetres);
+            let cell = |(_, degrees): &(_, Option<&Degrees>)| {
+                degrees.and_then(length).map_or_else(|| "-".to_owned(), |length| format!("{length:.2} mm"))
+            };
+            cells = columns.iter().map(cell).chain(SPLIT.map(|_| String::new())).collect();
+        } else {
+            cells.extend([joint.swing, joint.twist].map(|angle| format!("{angle:.2}")));
+        }
         rows.push((name, cells));
     }
     rows

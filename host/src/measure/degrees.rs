@@ -36,6 +36,9 @@ pub struct JointDegrees {
     pub angle: f64,
     /// Angle between the directions of the bone. The root's is its tilt.
     pub swing: f64,
+    /// Of a slider: how far apart the lengths are, mm.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub millimetres: Option<f64>,
     /// Turn about the bone that is left when the bone's directions are brought together. The root has none.
     pub twist: f64,
 }
@@ -64,7 +67,7 @@ pub fn degrees(
     let joints = skeleton.joints.iter().zip(sums).enumerate().map(|(index, (joint, sum))| {
         let [angle, swing, twist] = sum.map(|sum| sum / frames.max(1) as f64);
         let leaf = skeleton.children(index).next().is_none();
-        JointDegrees { joint: joint.name.clone(), leaf, angle, swing, twist }
+        JointDegrees { joint: joint.name.clone(), leaf, angle, swing, twist, millimetres: None }
     });
     Degrees::of(joints.collect())
 }
@@ -87,6 +90,7 @@ impl Degrees {
                 all.clone().filter_map(|degrees| degrees.joints.get(index)).map(of).sum::<f64>() / count
             };
             (joint.angle, joint.swing, joint.twist) = (mean(|j| j.angle), mean(|j| j.swing), mean(|j| j.twist));
+            joint.millimetres = joint.millimetres.map(|_| mean(|j| j.millimetres.unwrap_or_default()));
         }
         let mean = |of: fn(&Self) -> f64| all.clone().map(of).sum::<f64>() / count;
         Self { all: mean(|d| d.all), leaves: mean(|d| d.leaves), inner: mean(|d| d.inner), joints }

@@ -16,6 +16,8 @@ use serde::Serialize;
 
 pub use degrees::{Degrees, JointDegrees, degrees};
 
+use kinesic::rig::JointKind;
+
 use crate::align::{AlignError, Ends, Series, aligned};
 use crate::clip::Clip;
 use crate::rig::{MAX_JOINTS, Rig};
@@ -57,8 +59,24 @@ pub struct Distance {
 pub fn compare(rig: &Rig, a: &Measurable, b: &Measurable, ends: Ends) -> Result<Distance, AlignError> {
     let channels = 3 * rig.joints();
     let (found, path) = aligned(Series::new(&a.positions, channels)?, Series::new(&b.positions, channels)?, ends)?;
-    let degrees = degrees(&rig.skeleton, &a.rotations, &b.rotations, path.iter().copied());
+    let mut degrees = degrees(&rig.skeleton, &a.rotations, &b.rotations, path.iter().copied());
+    slide(rig, a, b, &path, &mut degrees);
     Ok(Distance { cm: 100.0 * found.rms, degrees })
+}
+
+/// How far apart the lengths of a machine's sliders are: rotations do not see them, and positions hold them times their levers.
+fn slide(rig: &Rig, a: &Measurable, b: &Measurable, path: &[(usize, usize)], degrees: &mut Degrees) {
+    if rig.frames().travels() {
+        return;
+    }
+    let (levers, channels) = (rig.levers(), 3 * rig.joints());
+    for (joint, (kind, first)) in rig.frames().places().enumerate() {
+        if let (JointKind::Slider, Some(found)) = (kind, degrees.joints.get_mut(joint)) {
+            let length = |of: &Measurable, frame: usize| of.positions[frame * channels + 3 * joint] / levers[first];
+            let sum: f64 = path.iter().map(|(i, j)| (length(a, *i) - length(b, *j)).abs()).sum();
+            found.millimetres = Some(1000.0 * sum / path.len().max(1) as f64);
+        }
+    }
 }
 
 /// Distance of two motions frame for frame, as long as both last: RMS joint distance and mean angles.
@@ -67,10 +85,10 @@ pub fn compare_frames(rig: &Rig, a: &Measurable, b: &Measurable) -> Distance {
     let frames = (a.rotations.len() / joints).min(b.rotations.len() / joints);
     let pairs = a.positions.iter().zip(&b.positions).take(3 * joints * frames);
     let squares: f64 = pairs.map(|(a, b)| (a - b).powi(2)).sum();
-    Distance {
-        cm: 100.0 * (squares / (joints * frames).max(1) as f64).sqrt(),
-        degrees: degrees(&rig.skeleton, &a.rotations, &b.rotations, (0..frames).map(|frame| (frame, frame))),
-    }
+    let path: Vec<(usize, usize)> = (0..frames).map(|frame| (frame, frame)).collect();
+    let mut degrees = degrees(&rig.skeleton, &a.rotations, &b.rotations, path.iter().copied());
+    slide(rig, a, b, &path, &mut degrees);
+    Distance { cm: 100.0 * (squares / (joints * frames).max(1) as f64).sqrt(), degrees }
 }
 
 impl Distance {
