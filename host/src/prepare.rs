@@ -57,11 +57,9 @@ pub enum PrepareError {
         error: ResampleError,
     },
     /// The file of a machine's motion cannot be used.
-    #[error("{}: {error}", path.display())]
+    #[error("{error}; {}", error.help)]
     Moves {
-        /// The file.
-        path: PathBuf,
-        /// The cause.
+        /// The cause, with the file.
         error: MovesError,
     },
     /// The motion is not one of the machine's.
@@ -136,12 +134,12 @@ impl Source {
     }
 
     fn read_moves(path: &Path, machine: &Arc<Machine>, options: &ReadOptions) -> Result<Self, PrepareError> {
-        let refuse = |error| PrepareError::Moves { path: path.to_owned(), error };
+        let refuse = |error: MovesError| PrepareError::Moves { error };
         let bytes = clip::contents(path)?;
         let mut moves = moves::parse(&bytes, path, &options.moves).map_err(refuse)?;
         if !moves.is_even() {
             let fps = moves.fps();
-            moves = moves.resample(fps).map_err(refuse)?;
+            moves = moves.resample(fps).map_err(|error| refuse(error.in_file(path)))?;
             moves.notes.push(format!("Uneven times: brought to {fps:.2} frames a second."));
         }
         let clip = machine

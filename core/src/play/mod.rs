@@ -13,8 +13,8 @@
 //! use kinesic::play::{Move, Player};
 //!
 //! // Two servos: pan and tilt, rad. `kinesic export --rust` writes such arrays.
-//! static IDLE: [[f32; 2]; 3] = [[0.0, 0.1], [0.1, 0.1], [0.0, 0.1]];
-//! static NOD: [[f32; 2]; 4] = [[0.0, 0.0], [0.0, 0.3], [0.0, 0.3], [0.0, 0.0]];
+//! static IDLE: [[f32; 2]; 50] = [[0.1, 0.0]; 50];
+//! static NOD: [[f32; 2]; 50] = [[0.0, 0.3]; 50];
 //!
 //! let mut player = Player::<2, 2>::new([0.0; 2]);
 //! player.start([0.4, -0.2], 50);                               // where the robot stands
