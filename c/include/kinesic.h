@@ -139,7 +139,7 @@ typedef struct {
  * What a running pipeline remembers.
  */
 typedef struct {
-  size_t words[2240];
+  size_t words[3200];
 } KinesicPipelineState;
 
 /**

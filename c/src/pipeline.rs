@@ -19,7 +19,7 @@ pub struct KinesicPipeline {
 /// What a running pipeline remembers.
 #[repr(C)]
 pub struct KinesicPipelineState {
-    words: [MaybeUninit<usize>; 2240],
+    words: [MaybeUninit<usize>; 3200],
 }
 
 /// Loads the engines of a pack, with every check that makes stepping infallible. A pack needs one of the three.
