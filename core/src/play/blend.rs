@@ -147,7 +147,8 @@ impl<const N: usize> Ease<N> {
     /// There in `frames` frames; earlier where they would leave their range on the way. Numbers that are not finite are ignored.
     pub fn go(&mut self, target: [f32; N], frames: u16) {
         take(&mut self.target, &target);
-        self.target = self.target.map(|x| x.clamp(0.0, self.most));
+        // `f32::clamp` would panic for a bound that is no number.
+        self.target = self.target.map(|x| x.max(0.0).min(self.most));
         let mut frames = frames;
         loop {
             self.blend.begin([&self.target; 3], frames);

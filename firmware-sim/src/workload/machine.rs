@@ -10,19 +10,26 @@ use kinesic_host::robot::{Defaults, Machine, ServoTable};
 use kinesic_host::translate::{TrainOptions, TrainPair, train};
 use kinesic_workloads::Workload;
 use kinesic_workloads::machine::{Antennas, Head, Lamp};
+use kinesic_workloads::player::Layers;
 
 use super::{Prepared, WorkloadError, on_host};
 
 pub fn head(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
-    prepare::<Head>(name, "servo-head.kin", &made::head(), frames)
+    prepare::<Head>(name, "servo-head.kin", &made::head(), frames, Defaults::default())
 }
 
 pub fn lamp(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
-    prepare::<Lamp>(name, "servo-lamp.kin", &made::lamp(), frames)
+    prepare::<Lamp>(name, "servo-lamp.kin", &made::lamp(), frames, Defaults::default())
 }
 
 pub fn antennas(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
-    prepare::<Antennas>(name, "servo-antennas.kin", &made::antennas(), frames)
+    prepare::<Antennas>(name, "servo-antennas.kin", &made::antennas(), frames, Defaults::default())
+}
+
+/// The same head with a player before the style, and jerk limits.
+pub fn player(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
+    let jerk = Defaults { jerk: Some(3000.0), ..Defaults::default() };
+    prepare::<Layers>(name, "servo-player.kin", &made::antennas(), frames, jerk)
 }
 
 /// Hobby servos, one on the other.
@@ -41,9 +48,10 @@ fn prepare<W: Workload>(
     pack_name: &'static str,
     machine: &made::Machine,
     frames: usize,
+    defaults: Defaults,
 ) -> Result<Prepared, WorkloadError> {
     let robot = ServoTable::parse(&table(machine))
-        .and_then(|table| Machine::of_table(&table, made::FPS, Defaults::default()))
+        .and_then(|table| Machine::of_table(&table, made::FPS, defaults))
         .expect("the table is well formed");
     let pair = |seed| {
         let [source, target] = machine.take(seed, 40.0).map(|motion| machine.locals(&robot.rig, &motion));

@@ -123,6 +123,7 @@ const ALL: &[(&str, Make)] = &[
     ("servo-head", machine::head),
     ("servo-lamp", machine::lamp),
     ("servo-antennas", machine::antennas),
+    ("servo-player", machine::player),
     ("pipeline", pipeline::float),
     ("pipeline-int", pipeline::integer),
     ("kernel-f32", kernel::f32),

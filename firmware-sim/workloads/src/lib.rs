@@ -15,6 +15,7 @@ pub mod machine;
 pub mod mechanics;
 pub mod modal;
 pub mod peer;
+pub mod player;
 pub mod pose;
 pub mod posed;
 pub mod servos;
