@@ -15,12 +15,10 @@ pub struct Bounds {
     pub jerk: f32,
 }
 
-impl Bounds {
-    /// Frames that the longest stop takes under a jerk limit, about.
-    pub fn stop_frames(&self) -> f32 {
-        let change = self.change.min(sqrt(self.speed * self.jerk));
-        3.0 * change / self.jerk + self.speed / change
-    }
+/// Frames that the longest stop takes under a jerk limit, about. Rates are per frame: `velocity dt`, `acceleration dt^2`, `jerk dt^3`.
+pub fn stop_frames(speed: f32, change: f32, jerk: f32) -> f32 {
+    let change = change.min(sqrt(speed * jerk));
+    3.0 * change / jerk + speed / change
 }
 
 /// What a limiter remembers of one coordinate: [`Plain`], or [`Smooth`](super::Smooth) where jerk is limited too.

@@ -20,7 +20,7 @@
 //! 3. `|(x'' - x') - (x' - x)| <= acceleration dt^2`, to the rounding of `x`, as long as 1 and 2 allow.
 //! 4. The difference of two of the differences in 3 is at most `jerk dt^3`, to the rounding of `x`, for a coordinate that has a jerk limit.
 //!
-//! A coordinate only goes as fast as it can brake before its bound, so with one table all three hold at once, always: the
+//! A coordinate only goes as fast as it can brake before its bound, so with one table 1 to 3 hold at once, always: the
 //! reachable speed is the exact discrete one, `D(w) = (n + 1) w - n (n + 1) / 2 u <= room` with `u = acceleration dt^2`,
 //! `n = floor(w / u)`.
 //!
@@ -43,7 +43,7 @@ mod state;
 mod step;
 mod stop;
 
-pub use axis::{Axis, Plain};
-pub use model::{LimitTable, Limiter, LimiterOf, SmoothLimiter};
+pub use axis::{Axis, Plain, stop_frames};
+pub use model::{LONGEST_STOP, LimitTable, Limiter, LimiterOf, STEPS, SmoothLimiter};
 pub use smooth::Smooth;
 pub use state::{Clamped, LimitReport, LimitState, LimitStateOf, SmoothLimitState};

@@ -2,7 +2,7 @@
 
 use core::marker::PhantomData;
 
-use super::axis::{Axis, Bounds, CATCH_UP, Plain, reach};
+use super::axis::{Axis, Bounds, CATCH_UP, Plain, reach, stop_frames};
 use super::smooth::Smooth;
 use crate::engine::FromPack;
 use crate::kernel::sqrt;
@@ -64,10 +64,10 @@ pub(super) struct Limit {
 }
 
 /// Steps a frame, rad or m, that single precision can still tell apart, and that are still numbers.
-const STEPS: core::ops::Range<f32> = 1e-6..1e6;
+pub const STEPS: core::ops::Range<f32> = 1e-6..1e6;
 
 /// A stop that takes more frames than this is not planned.
-const LONGEST_STOP: f32 = 1e4;
+pub const LONGEST_STOP: f32 = 1e4;
 
 /// Coordinates lie within this, rad or m.
 const FARTHEST: f32 = 100.0;
@@ -173,7 +173,7 @@ impl<'a, const ROWS: usize, A: Axis> LimiterOf<'a, ROWS, A> {
                 return refuse("limit/acceleration");
             }
             let given = table.jerk.as_flattened().get(index).is_some_and(|jerk| *jerk != 0.0);
-            if given && !(STEPS.contains(&jerk) && bounds.stop_frames() < LONGEST_STOP) {
+            if given && !(STEPS.contains(&jerk) && stop_frames(speed, change, jerk) < LONGEST_STOP) {
                 return refuse("limit/jerk");
             }
             if !(lower.abs() <= FARTHEST && lower <= upper) {

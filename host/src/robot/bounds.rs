@@ -1,10 +1,11 @@
 //! What one joint of a machine may do: the table's numbers beside the description's, checked.
 
+use kinesic::limit::{LONGEST_STOP, STEPS, stop_frames};
 use kinesic::rig::JointKind;
 
 use super::RobotError;
+use super::keys::LARGEST;
 use super::machine::{Defaults, Part};
-use super::servos::LARGEST;
 use crate::limit::JointLimit;
 use crate::moves::unit_name;
 
@@ -20,14 +21,8 @@ const START: f64 = 0.2;
 /// Speed of a joint for which nobody gives one, rad/s (a turn per second) and m/s.
 const SPEED: [f64; 2] = [std::f64::consts::TAU, 0.5];
 
-/// What a frame may add to a place, a step and a change, rad or m: what the limiter can tell apart.
-const STEPS: std::ops::Range<f32> = 1e-6..1e6;
-
 /// A speed or an acceleration that stands in for others is at most so large.
 const FASTEST: f64 = 1e5;
-
-/// A stop takes fewer frames than this.
-const LONGEST_STOP: f32 = 1e4;
 
 /// What was assumed, joint by joint, until notes of one kind become one line.
 #[derive(Default)]
@@ -253,8 +248,7 @@ impl Limits<'_> {
 
     /// Refuses a jerk that makes stops too long; steps of frames.
     fn stop(&self, step: f32, change: f32, jerk: f32) -> Result<(), RobotError> {
-        let change = change.min((step * jerk).sqrt());
-        let frames = 3.0 * change / jerk + step / change;
+        let frames = stop_frames(step, change, jerk);
         if frames < LONGEST_STOP {
             return Ok(());
         }

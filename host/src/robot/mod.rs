@@ -7,6 +7,7 @@
 //! | `mjcf` | the same from an MJCF (MuJoCo) |
 //! | `servos` | [`ServoTable`]: ids, units, zeros, bounds of servos |
 //! | `machine` | [`Machine`]: a robot as packs hold it: rig, limits, servos |
+//! | `keys` | keys of TOML tables and maps |
 //! | `bounds` | what one joint of a machine may do, checked |
 //! | `packed` | the robot of a pack as a [`Robot`] |
 //! | `retarget` | a person's motion on a robot, within its limits |
@@ -16,6 +17,7 @@
 mod bounds;
 mod description;
 mod error;
+pub(crate) mod keys;
 mod machine;
 mod mjcf;
 mod motion;

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use toml::{Table, Value};
 
 use super::RobotError;
-use crate::clip::map::nearest;
+use super::keys::{known, number, table};
 use crate::moves::{UNITS, unit_name};
 
 /// What the table says of one servo. Numbers are in the servo's own unit.
@@ -96,9 +96,6 @@ const POSE_KEYS: [&str; 6] = ["name", "min", "max", "speed", "acceleration", "je
 const SAMPLE: &str = "as in  [[servo]]  name = \"pan\"  id = 1  unit = \"deg\"  min = -90  max = 90";
 const POSE_SAMPLE: &str = "as in  [[pose]]  name = \"head\"  min = [-0.02, -0.02, -0.02, -0.7, -0.7, -3.1]  max = [0.02, 0.02, 0.02, 0.7, 0.7, 3.1]";
 
-/// A number of the table is at most so large.
-pub(super) const LARGEST: f64 = 1e9;
-
 /// A pose goes no farther, m and rad: a little more than a turn.
 const FARTHEST: [f64; 2] = [10.0, 7.0];
 
@@ -121,9 +118,7 @@ impl ServoTable {
     /// # Ok::<(), kinesic_host::robot::RobotError>(())
     /// ```
     pub fn parse(text: &str) -> Result<Self, RobotError> {
-        let table: Table = text.parse().map_err(|error: toml::de::Error| {
-            RobotError::new("the table of servos", format!("not TOML: {error}"), SAMPLE)
-        })?;
+        let table = table(text, "the table of servos", SAMPLE)?;
         known("the table of servos", &table, &KEYS)?;
         let name = match table.get("name") {
             None => None,
@@ -183,16 +178,6 @@ fn entries<'t>(table: &'t Table, key: &str) -> Result<Vec<(String, &'t Table)>, 
     list.iter().enumerate().map(entry).collect()
 }
 
-/// Refuses a key that means nothing.
-fn known(place: &str, table: &Table, all: &[&str]) -> Result<(), RobotError> {
-    if let Some(key) = table.keys().find(|key| !all.contains(&key.as_str())) {
-        let near = nearest(key, all.iter().copied()).map_or(String::new(), |near| format!("; did you mean '{near}'?"));
-        let what = format!("found the key '{key}'{near}");
-        return Err(RobotError::new(place, what, format!("expected: {}", all.join(", "))));
-    }
-    Ok(())
-}
-
 /// Reads keys of one entry.
 struct Keys<'t> {
     place: &'t str,
@@ -235,9 +220,9 @@ impl Keys<'_> {
 
     fn number(&self, key: &str) -> Result<Option<f64>, RobotError> {
         let Some(value) = self.table.get(key) else { return Ok(None) };
-        match value.as_float().or_else(|| value.as_integer().map(|x| x as f64)) {
-            Some(x) if x.is_finite() && x.abs() <= LARGEST => Ok(Some(x)),
-            _ => self.refuse(key, "a number from -1e9 to 1e9"),
+        match number(value) {
+            Some(x) => Ok(Some(x)),
+            None => self.refuse(key, "a number from -1e9 to 1e9"),
         }
     }
 
@@ -252,8 +237,8 @@ impl Keys<'_> {
 
     fn above(&self, key: &str, allowed: fn(f64) -> bool, expected: &str) -> Result<Option<f64>, RobotError> {
         let Some(value) = self.table.get(key) else { return Ok(None) };
-        match value.as_float().or_else(|| value.as_integer().map(|x| x as f64)) {
-            Some(x) if allowed(x) && x <= LARGEST => Ok(Some(x)),
+        match number(value) {
+            Some(x) if allowed(x) => Ok(Some(x)),
             _ => self.refuse(key, expected),
         }
     }
@@ -274,9 +259,8 @@ impl Keys<'_> {
 
     fn numbers<const N: usize>(&self, key: &str) -> Result<Option<[f64; N]>, RobotError> {
         let Some(value) = self.table.get(key) else { return Ok(None) };
-        let number = |value: &Value| value.as_float().or_else(|| value.as_integer().map(|x| x as f64));
         let all: Option<Vec<f64>> = value.as_array().and_then(|list| list.iter().map(number).collect());
-        match all.and_then(|all| <[f64; N]>::try_from(all).ok()).filter(|all| all.iter().all(|x| x.abs() <= LARGEST)) {
+        match all.and_then(|all| <[f64; N]>::try_from(all).ok()) {
             Some(all) => Ok(Some(all)),
             None => self.refuse(key, &format!("{N} numbers")),
         }

@@ -3,8 +3,8 @@
 use nalgebra::Vector3;
 use toml::{Table, Value};
 
-use crate::clip::map::nearest;
 use crate::robot::RobotError;
+use crate::robot::keys::{facing, known, number, table};
 use kinesic::model::LimitsMeta;
 
 /// Which coordinates a map asks for.
@@ -119,10 +119,8 @@ impl RobotMap {
     /// # Ok::<(), kinesic_host::robot::RobotError>(())
     /// ```
     pub fn parse(text: &str) -> Result<Self, RobotError> {
-        let table: Table = text
-            .parse()
-            .map_err(|error: toml::de::Error| RobotError::new("the map", format!("not TOML: {error}"), SAMPLE))?;
-        known("the map", table.keys(), &KEYS)?;
+        let table = table(text, "the map", SAMPLE)?;
+        known("the map", &table, &KEYS)?;
         let positive = |key: &str| match table.get(key) {
             None => Ok(None),
             Some(value) => match number(value) {
@@ -143,12 +141,7 @@ impl RobotMap {
         };
         let time = |key, default: f32| Ok::<_, RobotError>(positive(key)?.map_or(default, |x| x as f32));
         let meta = LimitsMeta::default();
-        let axes = [Vector3::x(), Vector3::y(), Vector3::z(), -Vector3::x(), -Vector3::y(), -Vector3::z()];
-        let forward = axes[word("forward", &["x", "y", "z", "-x", "-y", "-z"])?];
-        let up = axes[(2 + word("up", &["z", "-x", "-y", "-z", "x", "y"])?) % 6];
-        if forward.dot(&up) != 0.0 {
-            return Err(RobotError::new("forward", "found the direction of up", "expected one square to it"));
-        }
+        let [forward, up] = facing(&table)?;
         let Some(Value::Table(joints)) = table.get("joints") else {
             return Err(RobotError::new("the map", "found no table [joints]", format!("add it: {SAMPLE}")));
         };
@@ -190,24 +183,6 @@ fn height(table: &Table) -> Result<Option<[f64; 2]>, RobotError> {
     }
 }
 
-/// Refuses a key that means nothing.
-fn known<'a>(place: &str, keys: impl Iterator<Item = &'a String>, all: &[&str]) -> Result<(), RobotError> {
-    for key in keys {
-        if !all.contains(&key.as_str()) {
-            let near =
-                nearest(key, all.iter().copied()).map_or(String::new(), |near| format!("; did you mean '{near}'?"));
-            let what = format!("found the key '{key}'{near}");
-            return Err(RobotError::new(place, what, format!("expected: {}", all.join(", "))));
-        }
-    }
-    Ok(())
-}
-
-fn number(value: &Value) -> Option<f64> {
-    let number = value.as_float().or_else(|| value.as_integer().map(|x| x as f64))?;
-    number.is_finite().then_some(number)
-}
-
 /// A number, or a list of numbers.
 fn numbers(value: &Value) -> Option<Vec<f64>> {
     match value {
@@ -235,7 +210,7 @@ fn entry(joint: &str, value: &Value) -> Result<Entry, RobotError> {
             names(value).ok_or_else(|| refuse("urdf", value, "the name of a robot joint, or a list of names"))?;
         return Ok(entry);
     };
-    known(&place, table.keys(), &ENTRY)?;
+    known(&place, table, &ENTRY)?;
     if let Some(value) = table.get("urdf") {
         entry.urdf =
             names(value).ok_or_else(|| refuse("urdf", value, "the name of a robot joint, or a list of names"))?;

@@ -1,11 +1,12 @@
 //! The map: which parts of a robot are which limbs of a person.
 
 use nalgebra::Vector3;
-use toml::{Table, Value};
+use toml::Value;
 
 use super::Limb;
 use crate::clip::map::nearest;
 use crate::robot::RobotError;
+use crate::robot::keys::{facing, known, number, table};
 
 /// What the map says of one limb. Names are those of joints or of links.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,30 +59,9 @@ impl RetargetMap {
     /// # Ok::<(), kinesic_host::robot::RobotError>(())
     /// ```
     pub fn parse(text: &str) -> Result<Self, RobotError> {
-        let table: Table = text
-            .parse()
-            .map_err(|error: toml::de::Error| RobotError::new("the map", format!("not TOML: {error}"), SAMPLE))?;
-        known("the map", table.keys(), &KEYS)?;
-        let axis = |key: &str, or: Vector3<f64>| {
-            let Some(value) = table.get(key) else { return Ok(or) };
-            let [x, y, z] = [Vector3::x(), Vector3::y(), Vector3::z()];
-            Ok(match value.as_str() {
-                Some("x") => x,
-                Some("y") => y,
-                Some("z") => z,
-                Some("-x") => -x,
-                Some("-y") => -y,
-                Some("-z") => -z,
-                _ => {
-                    let what = format!("found {value}, expected one of \"x\", \"y\", \"z\", \"-x\", \"-y\", \"-z\"");
-                    return Err(RobotError::new(key, what, "correct it, or leave it out"));
-                }
-            })
-        };
-        let (forward, up) = (axis("forward", Vector3::x())?, axis("up", Vector3::z())?);
-        if forward.dot(&up) != 0.0 {
-            return Err(RobotError::new("forward", "found the direction of up", "expected one square to it"));
-        }
+        let table = table(text, "the map", SAMPLE)?;
+        known("the map", &table, &KEYS)?;
+        let [forward, up] = facing(&table)?;
         let Some(Value::Table(limbs)) = table.get("limbs") else {
             return Err(RobotError::new("the map", "found no table [limbs]", format!("add it: {SAMPLE}")));
         };
@@ -114,23 +94,6 @@ impl RetargetMap {
     }
 }
 
-fn known<'a>(place: &str, keys: impl Iterator<Item = &'a String>, all: &[&str]) -> Result<(), RobotError> {
-    for key in keys {
-        if !all.contains(&key.as_str()) {
-            let near =
-                nearest(key, all.iter().copied()).map_or(String::new(), |near| format!("; did you mean '{near}'?"));
-            let what = format!("found the key '{key}'{near}");
-            return Err(RobotError::new(place, what, format!("expected: {}", all.join(", "))));
-        }
-    }
-    Ok(())
-}
-
-fn number(value: &Value) -> Option<f64> {
-    let number = value.as_float().or_else(|| value.as_integer().map(|x| x as f64))?;
-    (number.abs() < 1e6).then_some(number)
-}
-
 fn entry(name: &str, value: &Value) -> Result<LimbEntry, RobotError> {
     let place = format!("[limbs] {name}");
     let limb = Limb::from_name(name).ok_or_else(|| {
@@ -156,7 +119,7 @@ fn entry(name: &str, value: &Value) -> Result<LimbEntry, RobotError> {
             _ => return Err(refuse("", value, "two names: where the limb begins and where it ends")),
         },
         Value::Table(table) => {
-            known(&place, table.keys(), &ENTRY)?;
+            known(&place, table, &ENTRY)?;
             let name = |key: &str| match table.get(key) {
                 None => Ok(None),
                 Some(Value::String(name)) => Ok(Some(name.clone())),
