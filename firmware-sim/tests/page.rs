@@ -39,7 +39,7 @@ fn source(manner: &Manner, phase: f64, seed: u64) -> Source {
 /// Two engines, two clips, a target: four figures.
 fn page(folder: &Path, wasm: &[u8]) -> PathBuf {
     let packs = [("weary", models::weary()), ("mechanics", models::mechanics())]
-        .map(|(name, file)| ViewPack { name: name.to_owned(), file });
+        .map(|(name, file)| ViewPack { name: name.to_owned(), file, look: None });
     let target = Some(source(&Manner::WEARY, 0.3, 4));
     let clips =
         [("a walk", source(&Manner::NEUTRAL, 0.3, 3), target), ("a weary walk", source(&Manner::WEARY, 0.0, 2), None)]
@@ -157,7 +157,7 @@ fn a_robot_s_style_has_the_bits_of_the_host() {
     std::fs::write(&moves, format!("time_s,pan_deg,tilt_deg,left_antenna_deg,right_antenna_deg\n{rows}")).unwrap();
     let options = ReadOptions { machine: Some(Arc::new(machine)), ..ReadOptions::default() };
     let source = Source::read(&moves, &options).unwrap();
-    let packs = vec![ViewPack { name: "lively".to_owned(), file }];
+    let packs = vec![ViewPack { name: "lively".to_owned(), file, look: None }];
     let clips = vec![ViewClip { name: "a move".to_owned(), source, target: None }];
     let shown = View { packs, clips, ..View::default() };
     let html = view::page("kinesic", "made by a test", &shown, view::WASM).unwrap();
@@ -303,7 +303,7 @@ fn every_control_changes_what_it_says() {
 }
 
 fn face_page(folder: &Path, (file, faces): &(PackFile, [ViewFace; 2])) -> PathBuf {
-    let face_packs = vec![ViewPack { name: "smile".to_owned(), file: file.clone() }];
+    let face_packs = vec![ViewPack { name: "smile".to_owned(), file: file.clone(), look: None }];
     let shown = View { face_packs, faces: faces.to_vec(), ..View::default() };
     let path = folder.join("faces.html");
     std::fs::write(&path, view::page("kinesic: smile", "made by a test", &shown, view::WASM).unwrap()).unwrap();

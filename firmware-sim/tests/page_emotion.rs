@@ -19,7 +19,7 @@ use visit::{apart, dark, fits, pose, set, settle, shot, state, well};
 
 fn pack(name: &str, (model, rig): &(EmotionModel, Rig)) -> ViewPack {
     let file = PackFile::from_bytes(&model.pack(rig, &Provenance::default()));
-    ViewPack { name: name.to_owned(), file }
+    ViewPack { name: name.to_owned(), file, look: None }
 }
 
 /// Weary from 0 to 1, swaying from -1 to 1; a cycle.
@@ -225,7 +225,7 @@ fn emotions_stand_beside_other_packs_and_each_other() {
     let map = JointMap::detect(&clip.skeleton).unwrap();
     let source = Source::new("made", clip, map);
     let shown = View {
-        packs: vec![ViewPack { name: "weary".to_owned(), file: models::weary() }],
+        packs: vec![ViewPack { name: "weary".to_owned(), file: models::weary(), look: None }],
         clips: vec![ViewClip { name: "a walk".to_owned(), source, target: None }],
         emotions: emotions[..1].to_vec(),
         ..View::default()

@@ -37,7 +37,7 @@ fn renamed(file: &PackFile) -> ViewPack {
         }
         _ => {}
     });
-    ViewPack { name: HOSTILE.to_owned(), file: PackFile::from_bytes(&pack.bytes()) }
+    ViewPack { name: HOSTILE.to_owned(), file: PackFile::from_bytes(&pack.bytes()), look: None }
 }
 
 #[test]

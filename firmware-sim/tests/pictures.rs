@@ -129,7 +129,7 @@ fn the_live_page() {
         source: source(&Manner::NEUTRAL, 3),
         target: Some(source(&Manner::WEARY, 4)),
     };
-    let packs = packs.map(|(name, file)| ViewPack { name: name.to_owned(), file }).to_vec();
+    let packs = packs.map(|(name, file)| ViewPack { name: name.to_owned(), file, look: None }).to_vec();
     let shown = View { packs, clips: vec![clip], ..View::default() };
     screenshot("page.png", &shown, "document.getElementById('play').click(); seek(2.1)", [1200, 860]);
 }
@@ -139,7 +139,7 @@ fn the_live_page() {
 fn emotions() {
     let (model, rig) = emotion::synthetic::model(2);
     let file = PackFile::from_bytes(&model.pack(&rig, &Provenance::default()));
-    let emotions = vec![ViewPack { name: "moods".to_owned(), file }];
+    let emotions = vec![ViewPack { name: "moods".to_owned(), file, look: None }];
     let shown = View { emotions, ..View::default() };
     let script = "play(false); const moved = document.getElementById('emotion-0-1'); moved.value = 1; \
         moved.dispatchEvent(new Event('input')); seek(0.78)";
@@ -150,7 +150,7 @@ fn emotions() {
 #[ignore = "needs chromium: firmware-sim/setup.sh"]
 fn a_drawn_face() {
     let (file, faces) = drawn::faces();
-    let face_packs = vec![ViewPack { name: "smile".to_owned(), file }];
+    let face_packs = vec![ViewPack { name: "smile".to_owned(), file, look: None }];
     let shown = View { face_packs, faces: faces[..1].to_vec(), ..View::default() };
     screenshot("face.png", &shown, "kinesic.face.turn(0.9)", [1000, 640]);
 }

@@ -7,6 +7,7 @@ use kinesic::{Frame, LoadError, Pack, Rig, Skeleton};
 
 use crate::ROWS;
 use crate::engine::HostPose;
+use crate::memory::{PoseFloats, Write as _};
 
 /// Strengths of all attributes.
 pub type Strengths = [f32; ATTRIBUTES];
@@ -52,12 +53,18 @@ impl Player {
         self.state = self.kept;
     }
 
-    /// The pose now, and the strengths that it plays; then `dt` seconds pass.
-    pub fn step(&mut self, strength: &Strengths, dt: f32) -> (HostPose, Strengths) {
-        let (mut frame, mut out) = (Frame::new(), self.rig.rest());
+    /// The pose of a body, or the coordinates of a machine, and the strengths that it plays; then `dt` seconds pass.
+    pub fn step(&mut self, strength: &Strengths, dt: f32, to: &mut PoseFloats) -> Strengths {
+        let mut frame = Frame::new();
         self.state.strength = *strength;
         self.model.step(&mut self.state, dt, &mut frame);
-        self.rig.show(&frame, &frame, &mut Drift::new(), &mut out);
-        (out, self.state.playing().unwrap_or_default())
+        if self.rig.travels() {
+            let mut out: HostPose = self.rig.rest();
+            self.rig.show(&frame, &frame, &mut Drift::new(), &mut out);
+            out.write(to);
+        } else {
+            to.iter_mut().zip(frame.coordinates()).for_each(|(to, x)| *to = *x);
+        }
+        self.state.playing().unwrap_or_default()
     }
 }

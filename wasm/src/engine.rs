@@ -70,16 +70,24 @@ impl Engine {
         }
     }
 
+    /// True for a machine that stands: its frames are coordinates, not poses.
+    pub fn stands(&self) -> bool {
+        matches!(&self.model, Model::Live { pipeline, .. } if !pipeline.rig().travels())
+    }
+
+    /// One frame of a machine: coordinates in, coordinates out.
+    pub fn step_coordinates(&mut self, source: &[f32], strength: f32, mask: &Mask, out: &mut [f32]) {
+        if let Model::Live { pipeline, state } = &mut self.model {
+            control(pipeline.rig(), state, strength, mask);
+            pipeline.step_coordinates(state, Some(source), out);
+        }
+    }
+
     /// One frame.
     pub fn step(&mut self, source: &HostPose, strength: f32, mask: &Mask) -> HostPose {
         match &mut self.model {
             Model::Live { pipeline, state } => {
-                let (engine, _) = &mut state.engine;
-                for controls in live::controls(engine) {
-                    controls.strength = strength;
-                    let weights = mask.iter().enumerate();
-                    weights.for_each(|(joint, weight)| pipeline.rig().weigh(joint, *weight, &mut controls.mask));
-                }
+                control(pipeline.rig(), state, strength, mask);
                 let mut out = Pose::identity();
                 pipeline.step(state, Some(source), &mut out);
                 out
@@ -103,5 +111,13 @@ impl Engine {
         model.step(state_of_other, other, &mut expressive);
         mix(&parts, &expressive, &Modulation { amount, mask: *mask }, &mut out);
         out
+    }
+}
+
+/// Strength and mask of whatever restyles.
+fn control(rig: &Rig, state: &mut PipelineState<RestylingState, ROWS>, strength: f32, mask: &Mask) {
+    for controls in live::controls(&mut state.engine.0) {
+        controls.strength = strength;
+        mask.iter().enumerate().for_each(|(joint, weight)| rig.weigh(joint, *weight, &mut controls.mask));
     }
 }

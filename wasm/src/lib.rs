@@ -81,7 +81,7 @@ pub extern "C" fn message() -> *const u8 {
     memory().message.text().as_ptr()
 }
 
-/// Address of the pose that [`step`] reads.
+/// Address of the pose, or the coordinates of a machine, that [`step`] reads.
 #[unsafe(no_mangle)]
 pub extern "C" fn input() -> *mut f32 {
     memory().input.as_mut_ptr()
@@ -93,7 +93,7 @@ pub extern "C" fn other() -> *mut f32 {
     memory().other.as_mut_ptr()
 }
 
-/// Address of the pose that [`step`], [`mix`] and [`step_emotion`] write.
+/// Address of the pose, or the coordinates of a machine, that [`step`], [`mix`] and [`step_emotion`] write.
 #[unsafe(no_mangle)]
 pub extern "C" fn output() -> *mut f32 {
     memory().output.as_mut_ptr()
@@ -123,11 +123,15 @@ pub extern "C" fn reset() {
     }
 }
 
-/// One frame: [`input`] to [`output`], with a strength (translator, components) or an amount of expression (body mechanics).
+/// One frame: [`input`] to [`output`], with a strength (translator, components) or an amount of expression (body mechanics). Both are
+/// poses of a body; of a machine that stands they are coordinates, rad and m.
 #[unsafe(no_mangle)]
 pub extern "C" fn step(strength: f32) {
     let memory = memory();
-    if let Some(engine) = memory.engine.get() {
+    let Some(engine) = memory.engine.get() else { return };
+    if engine.stands() {
+        engine.step_coordinates(&memory.input, strength, &memory.mask, &mut memory.output);
+    } else {
         engine.step(&memory.input.pose(), strength, &memory.mask).write(&mut memory.output);
     }
 }
@@ -142,7 +146,7 @@ pub extern "C" fn mix(amount: f32) {
     }
 }
 
-/// World positions of the joints of a pose: 0 = [`input`], 1 = [`output`]. Core's forward kinematics.
+/// World positions of the joints of a body's pose: 0 = [`input`], 1 = [`output`]. Core's forward kinematics.
 #[unsafe(no_mangle)]
 pub extern "C" fn place(which: u32) {
     let memory = memory();
@@ -172,9 +176,7 @@ pub extern "C" fn playing() -> *const f32 {
 pub extern "C" fn step_emotion(dt: f32) {
     let memory = memory();
     if let Some(player) = memory.emotion.get() {
-        let (pose, playing) = player.step(&memory.strengths, dt);
-        pose.write(&mut memory.output);
-        memory.playing = playing;
+        memory.playing = player.step(&memory.strengths, dt, &mut memory.output);
     }
 }
 

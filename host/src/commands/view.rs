@@ -8,9 +8,12 @@ use kinesic_host::engines::known;
 use kinesic_host::gait::{Manner, walk};
 use kinesic_host::models;
 use kinesic_host::pack::PackFile;
+use kinesic_host::plain;
 use kinesic_host::prepare::Source;
+use kinesic_host::robot::look::{Drives, Look};
+use kinesic_host::robot::{Machine, Robot};
 use kinesic_host::view::{self, View, ViewClip, ViewFace, ViewPack};
-use miette::{IntoDiagnostic, miette};
+use miette::{Context, IntoDiagnostic, miette};
 use serde::Serialize;
 
 use super::clips::{Reading, clip_paths};
@@ -22,7 +25,7 @@ use super::pictures::{Photographed, photographed};
 /// Make a page on which packs play clips, emotions and faces, live: one HTML file that opens from disk
 ///
 /// The page runs the device's own code, compiled to WebAssembly, frame by frame: skeletons side by side, time, strength or
-/// expressiveness, joints, plots, foot contacts. Without packs it shows the two that come with the program; without clips, a
+/// expressiveness, joints, plots, foot contacts. A robot is drawn as --model describes it. Without packs it shows the two that come with the program; without clips, a
 /// made-up walk. An emotion pack makes its motion itself, at strengths that sliders change while it plays. A face pack with pictures and their landmarks shows the faces with a slider.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
@@ -32,14 +35,21 @@ Examples:
   kinesic view tired.kin walk.bvh --target tired-walk.bvh
   kinesic view models/mechanics.kin walk.bvh dance.bvh
   kinesic view anger.kin
+  kinesic view lively.kin wave.csv --model desk.urdf
   kinesic view smile.kin --image me.jpg --landmarks me.csv --out me.html")]
 pub struct Args {
-    /// Packs (.kin) and clips (BVH, Kinect CSV, or folders of them), in any order
+    /// Packs (.kin) and clips (BVH, Kinect CSV, a robot's moves, or folders of them), in any order
     #[arg(value_name = "FILE")]
     files: Vec<PathBuf>,
     /// What the clip should become: shown beside it (may be repeated, in the order of the clips)
     #[arg(long, value_name = "CLIP")]
     target: Vec<PathBuf>,
+    /// The robot's description (URDF, or MJCF of MuJoCo): its links are drawn, with their meshes (STL, OBJ, COLLADA); without, bones
+    #[arg(long, value_name = "ROBOT.urdf")]
+    model: Option<PathBuf>,
+    /// What the description calls otherwise: the link that a pose moves, or a joint's other name (may be repeated)
+    #[arg(long, value_name = "NAME=LINK", requires = "model", value_parser = drives)]
+    drives: Vec<Drives>,
     /// Picture of a face for the face packs (JPEG or PNG; may be repeated)
     #[arg(long, value_name = "IN.jpg", requires = "landmarks")]
     image: Vec<PathBuf>,
@@ -84,7 +94,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let bar = spinner();
     bar.set_message("reading");
     let (face_packs, packs) =
-        read_packs(&packs)?.into_iter().partition::<Vec<_>, _>(|pack| holds(pack, |m| m.face().is_some()));
+        read_packs(&packs, args)?.into_iter().partition::<Vec<_>, _>(|pack| holds(pack, |m| m.face().is_some()));
     let plays_clips = |m: &ModelMeta| known(m).player().is_some();
     let (emotions, packs) = packs
         .into_iter()
@@ -168,13 +178,51 @@ fn stem(path: &Path) -> String {
 }
 
 fn own_packs() -> Vec<ViewPack> {
-    let pack = |name: &str, file| ViewPack { name: name.to_owned(), file };
+    let pack = |name: &str, file| ViewPack { name: name.to_owned(), file, look: None };
     vec![pack("weary", models::weary()), pack("mechanics", models::mechanics())]
 }
 
-fn read_packs(paths: &[PathBuf]) -> miette::Result<Vec<ViewPack>> {
-    let read = |path: &PathBuf| Ok(ViewPack { name: stem(path), file: PackFile::read(path).into_diagnostic()? });
-    paths.iter().map(read).collect()
+fn read_packs(paths: &[PathBuf], args: &Args) -> miette::Result<Vec<ViewPack>> {
+    let robot = args.model.as_ref().map(|path| Robot::read(path)).transpose()?;
+    let mut notes = Vec::new();
+    let mut machines = 0;
+    let read = |path: &PathBuf| {
+        let file = PackFile::read(path).into_diagnostic()?;
+        let pack = file.pack().into_diagnostic()?;
+        let machine = Machine::from_pack(&pack).into_diagnostic().wrap_err_with(|| path.display().to_string())?;
+        machines += usize::from(machine.is_some());
+        let look = match (&robot, machine, &args.model) {
+            (Some(robot), Some(machine), Some(model)) => {
+                let folder = model.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+                let look = Look::of_robot(&machine, robot, folder, &args.drives);
+                Some(look.map_err(|error| error.in_file(model))?)
+            }
+            _ => None,
+        };
+        notes.extend(look.iter().flat_map(|look| look.notes.iter().cloned()));
+        Ok(ViewPack { name: stem(path), file, look })
+    };
+    let packs = paths.iter().map(read).collect::<miette::Result<_>>()?;
+    if let (Some(model), 0) = (&args.model, machines) {
+        return Err(miette!(
+            help = "name one: kinesic robot import makes it, and training with --robot keeps it",
+            "no pack has a robot to draw as {}",
+            model.display()
+        ));
+    }
+    notes.dedup();
+    notes.iter().for_each(|note| eprintln!("note: {}", plain::line(note)));
+    Ok(packs)
+}
+
+/// `NAME=LINK`.
+fn drives(text: &str) -> Result<Drives, String> {
+    match text.split_once('=') {
+        Some((name, what)) if !name.is_empty() && !what.is_empty() => {
+            Ok(Drives { name: name.to_owned(), what: what.to_owned() })
+        }
+        _ => Err("expected NAME=LINK or NAME=JOINT, as in head=head_link".to_owned()),
+    }
 }
 
 fn read_clips(paths: &[PathBuf], args: &Args, packs: &[ViewPack]) -> miette::Result<Vec<ViewClip>> {

@@ -4,6 +4,8 @@ use std::collections::HashMap;
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
+use super::shape::Shape;
+
 /// Followers of followers: at most so many in a row.
 pub(super) const LONGEST: usize = 32;
 
@@ -75,6 +77,8 @@ pub struct Robot {
     pub name: String,
     /// Its joints.
     pub joints: Vec<RobotJoint>,
+    /// How its links look.
+    pub shapes: Vec<Shape>,
     /// What was assumed or left out beside the joints, one sentence each.
     pub notes: Vec<String>,
 }

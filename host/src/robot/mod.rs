@@ -5,6 +5,8 @@
 //! | `description` | [`Robot`]: joints in a tree, in the frame of the root link |
 //! | `urdf` | [`Robot::read`], [`Robot::parse`]: from a URDF |
 //! | `mjcf` | the same from an MJCF (MuJoCo) |
+//! | `shape` | [`Shape`]: what a description says of how its links look |
+//! | `look` | what is drawn of a machine: its links in motion, their solids, meshes read from files |
 //! | `servos` | [`ServoTable`]: ids, units, zeros, bounds of servos |
 //! | `machine` | [`Machine`]: a robot as packs hold it: rig, limits, servos |
 //! | `keys` | keys of TOML tables and maps |
@@ -18,12 +20,14 @@ mod bounds;
 mod description;
 mod error;
 pub(crate) mod keys;
+pub mod look;
 mod machine;
 mod mjcf;
 mod motion;
 mod packed;
 pub mod retarget;
 mod servos;
+mod shape;
 mod urdf;
 
 pub use description::{Mimic, Motion, Robot, RobotJoint};
@@ -31,3 +35,4 @@ pub use error::RobotError;
 pub use machine::{Defaults, Machine, Servo};
 pub use motion::MotionError;
 pub use servos::{POSE, PoseEntry, ServoEntry, ServoTable};
+pub use shape::{Form, Shape};

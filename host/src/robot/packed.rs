@@ -40,7 +40,7 @@ impl Robot {
                 notes: Vec::new(),
             }
         });
-        Self { name: machine.name.clone(), joints: moved.collect(), notes: Vec::new() }
+        Self { name: machine.name.clone(), joints: moved.collect(), shapes: Vec::new(), notes: Vec::new() }
     }
 
     /// Keeps a pack's bounds and speeds beside the description's own, the tighter of the two. A note says which joints the pack alone has.

@@ -1,14 +1,14 @@
 //! An emotion pack: its strengths, and digests of what the host plays.
 
 use kinesic::model::{ATTRIBUTES, EmotionMeta};
-use kinesic::{LoadError, Pose};
+use kinesic::LoadError;
 use serde::Serialize;
 
-use super::scene::{BodyData, CHECKED, digest};
+use super::scene::{BodyData, CHECKED, coordinates, hash, words};
 use super::{ViewError, ViewPack};
 use crate::emotion::HostEmotion;
 use crate::emotion::play::{HostState, Strengths, pose, seconds};
-use crate::rig::{MAX_JOINTS, Rig};
+use crate::rig::{HostFrame, Rig};
 
 /// How long the last pose of a motion that ends is shown, s.
 const STANDS: f32 = 1.0;
@@ -64,7 +64,7 @@ pub(super) fn data(of: &ViewPack) -> Result<EmotionData, ViewError> {
     if let Some(frames) = seconds.map(|seconds| f64::from(seconds * rate)).filter(|frames| *frames > MOST_FRAMES) {
         return Err(ViewError::Long { name: of.name.clone(), frames, most: MOST_FRAMES });
     }
-    let played = |to: &Strengths| digest(&play(&model, &rig, &start, frame, to), rig.joints());
+    let played = |to: &Strengths| hash(play(&model, &rig, &start, frame, to).into_iter());
     let attributes = meta.attributes.iter().flatten().zip(start);
     let attributes = attributes.map(|(attribute, start)| AttributeData {
         name: attribute.name.to_owned(),
@@ -72,7 +72,7 @@ pub(super) fn data(of: &ViewPack) -> Result<EmotionData, ViewError> {
         start,
     });
     Ok(EmotionData {
-        body: BodyData::new(&of.name, &pack, of.file.bytes(), &rig),
+        body: BodyData::new(of, &pack, &rig)?,
         motion: meta.motion.to_owned(),
         attributes: attributes.collect(),
         seconds,
@@ -90,14 +90,19 @@ fn strengths(meta: &EmotionMeta, choose: impl Fn([f32; 2]) -> f32) -> Strengths 
     strengths
 }
 
-/// The first [`CHECKED`] frames at the pack's rate, with other strengths from one on.
-fn play(model: &HostEmotion, rig: &Rig, start: &Strengths, change: usize, to: &Strengths) -> Vec<Pose<MAX_JOINTS>> {
+/// Bits of the first [`CHECKED`] frames at the pack's rate, with other strengths from one on.
+fn play(model: &HostEmotion, rig: &Rig, start: &Strengths, change: usize, to: &Strengths) -> Vec<u32> {
     let mut state = Box::new(HostState::new());
-    let step = |frame| {
-        state.strength = if frame < change { *start } else { *to };
-        pose(model, &rig.frames(), &mut state, model.frame_time())
+    let mut step = |at| -> Vec<u32> {
+        state.strength = if at < change { *start } else { *to };
+        if rig.frames().travels() {
+            return words(&pose(model, &rig.frames(), &mut state, model.frame_time()), rig.joints()).collect();
+        }
+        let mut frame = HostFrame::new();
+        model.step(&mut state, model.frame_time(), &mut frame);
+        coordinates(rig, &frame).collect()
     };
-    (0..CHECKED).map(step).collect()
+    (0..CHECKED).flat_map(&mut step).collect()
 }
 
 /// The longest that the motion takes where every attribute is at an end or in the middle of its range, s.
@@ -124,7 +129,7 @@ mod tests {
 
     fn of(model: &EmotionModel, rig: &Rig) -> ViewPack {
         let file = PackFile::from_bytes(&model.pack(rig, &Provenance::default()));
-        ViewPack { name: "made".to_owned(), file }
+        ViewPack { name: "made".to_owned(), file, look: None }
     }
 
     #[test]
@@ -164,7 +169,7 @@ mod tests {
 
     #[test]
     fn a_pack_without_emotions_is_named() {
-        let weary = ViewPack { name: "weary".to_owned(), file: models::weary() };
+        let weary = ViewPack { name: "weary".to_owned(), file: models::weary(), look: None };
         let error = data(&weary).err().unwrap().to_string();
         assert!(error.starts_with("weary: ") && error.contains("emotion model"), "{error}");
     }

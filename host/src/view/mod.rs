@@ -5,17 +5,19 @@
 //! | `mod` | what is shown, and the file |
 //! | `fill` | the page from its template: parts in one pass, names as text, a Content-Security-Policy |
 //! | `scene` | a pack on a clip: poses as the page reads them, and the digest of what the host makes of them |
+//! | `machine` | a robot's links and solids |
 //! | `emotion` | an emotion pack: its strengths, and digests of what the host plays |
 //! | `face` | a face pack on a picture: landmarks, the picture's warps, and the digest of the host's landmarks |
 //! | `assets/` | markup, style, scripts; `kinesic.wasm`, made of the crate `wasm/` by `./ci.sh wasm` |
 //!
 //! Everything is in the file: it opens from disk, without a network. The scripts share one scope, in this order: `engine.js` (the core,
-//! motions), `scene.js` (skeletons on a canvas), `plots.js` (curves), `controls.js` (sliders), `emotion.js` (emotion strength),
+//! motions), `machine.js` (links of robots), `solids.js` (their triangles), `scene.js` (figures on a canvas), `plots.js` (curves), `controls.js` (sliders), `emotion.js` (emotion strength),
 //! `face.js` (pictures of faces), `app.js` (what is shown, time, what a test reads back).
 
 mod emotion;
 mod face;
 mod fill;
+mod machine;
 mod scene;
 
 use base64::Engine as _;
@@ -32,14 +34,17 @@ use crate::face::warp::WarpError;
 use crate::pack::PackFile;
 use crate::prepare::{PrepareError, Source};
 use crate::rig::RigError;
+use crate::robot::look::Look;
 
 /// The core for browsers.
 pub const WASM: &[u8] = include_bytes!("assets/kinesic.wasm");
 
 const PAGE: &str = include_str!("assets/page.html");
 const STYLE: &str = include_str!("assets/style.css");
-const SCRIPTS: [&str; 7] = [
+const SCRIPTS: [&str; 9] = [
     include_str!("assets/engine.js"),
+    include_str!("assets/machine.js"),
+    include_str!("assets/solids.js"),
     include_str!("assets/scene.js"),
     include_str!("assets/plots.js"),
     include_str!("assets/controls.js"),
@@ -55,6 +60,8 @@ pub struct ViewPack {
     pub name: String,
     /// The pack.
     pub file: PackFile,
+    /// How a robot looks; without, bones show it.
+    pub look: Option<Look>,
 }
 
 /// A clip to show.
@@ -195,7 +202,7 @@ pub fn page(title: &str, made: &str, view: &View, wasm: &[u8]) -> Result<String,
     for pack in &view.packs {
         let player = scene::Player::new(pack)?;
         data.scenes.push(view.clips.iter().map(|clip| player.scene(clip)).collect::<Result<_, _>>()?);
-        data.packs.push(player.data());
+        data.packs.push(player.data()?);
     }
     for pack in &view.face_packs {
         let player = face::FacePlayer::new(pack)?;
@@ -236,7 +243,7 @@ mod tests {
         let map = crate::clip::JointMap::detect(&walk(&Manner::NEUTRAL, 0.5, 60.0, 0.0, 1).skeleton).unwrap();
         let source = Source::new(HOSTILE, clip, map);
         let shown = View {
-            packs: vec![ViewPack { name: HOSTILE.to_owned(), file: models::weary() }],
+            packs: vec![ViewPack { name: HOSTILE.to_owned(), file: models::weary(), look: None }],
             clips: vec![ViewClip { name: HOSTILE.to_owned(), source, target: None }],
             ..View::default()
         };

@@ -6,11 +6,14 @@ use kinesic::engine::Controls;
 use kinesic::{LoadError, Pack, Pose};
 use serde::Serialize;
 
+use super::machine::MachineData;
 use super::{ViewClip, ViewError, ViewPack};
 use crate::clip::{Canonical, Clip, JointMap, Skeleton};
 use crate::engines;
 use crate::prepare::Source;
-use crate::rig::{MAX_JOINTS, Rig};
+use crate::rig::{HostFrame, MAX_JOINTS, Rig};
+use crate::robot::Machine;
+use crate::robot::look::Look;
 
 /// Frames of each clip whose output the page compares with the host's.
 pub const CHECKED: usize = 300;
@@ -29,9 +32,11 @@ pub(super) struct PackData {
     plausible: [f32; 2],
 }
 
-/// What the scripts read of any pack that moves a skeleton.
+/// What the scripts read of any pack that moves a skeleton or a machine.
 #[derive(Serialize)]
 pub(super) struct BodyData {
+    /// A machine's links; none for a body.
+    machine: Option<MachineData>,
     name: String,
     rate: f32,
     size: usize,
@@ -44,11 +49,18 @@ pub(super) struct BodyData {
 }
 
 impl BodyData {
-    pub fn new(name: &str, pack: &Pack, bytes: &[u8], rig: &Rig) -> Self {
+    pub fn new(of: &ViewPack, pack: &Pack, rig: &Rig) -> Result<Self, ViewError> {
         let (skeleton, map) = (&rig.skeleton, &rig.map);
         let foot = |toe, ankle| map.joint(toe).or(map.joint(ankle));
-        Self {
-            name: name.to_owned(),
+        let machine = Machine::from_pack(pack).map_err(|error| ViewError::Rig { name: of.name.clone(), error })?;
+        let machine = machine.map(|machine| {
+            let plain = || Look::of_machine(&machine);
+            MachineData::new(&machine, &of.look.clone().unwrap_or_else(plain))
+        });
+        let bytes = of.file.bytes();
+        Ok(Self {
+            machine,
+            name: of.name.clone(),
             rate: pack.metadata().frame_rate,
             size: bytes.len(),
             joints: joints(skeleton, map),
@@ -59,7 +71,7 @@ impl BodyData {
             head: map.joint(Canonical::Head),
             legs: legs(skeleton, map),
             bytes: BASE64_STANDARD.encode(bytes),
-        }
+        })
     }
 }
 
@@ -83,9 +95,8 @@ pub(super) struct SceneData {
 
 /// What plays one pack.
 pub(super) struct Player<'p> {
-    name: &'p str,
+    of: &'p ViewPack,
     pack: Pack<'p>,
-    bytes: &'p [u8],
     rig: Rig,
     engine: &'static str,
     player: engines::Player,
@@ -98,38 +109,47 @@ impl<'p> Player<'p> {
         let rig = Rig::from_pack(&pack).map_err(|error| ViewError::Rig { name: of.name.clone(), error })?;
         let expected = "a translator, style components or body mechanics";
         let (engine, player) = engines::player(&pack, false).ok_or(LoadError::NoModel { expected }).map_err(refuse)?;
-        Ok(Self { name: &of.name, pack, bytes: of.file.bytes(), rig, engine, player })
+        Ok(Self { of, pack, rig, engine, player })
     }
 
-    pub fn data(&self) -> PackData {
+    pub fn data(&self) -> Result<PackData, ViewError> {
         let (engine, plausible) = (self.engine, self.player.plausible);
-        PackData { body: BodyData::new(self.name, &self.pack, self.bytes, &self.rig), engine, plausible }
+        Ok(PackData { body: BodyData::new(self.of, &self.pack, &self.rig)?, engine, plausible })
     }
 
     pub fn scene(&self, clip: &ViewClip) -> Result<SceneData, ViewError> {
         let on_rig = |source: &Source| source.on_rig(&self.rig, f64::from(self.pack.metadata().frame_rate));
         let source = on_rig(&clip.source)?;
         let target = clip.target.as_ref().map(on_rig).transpose()?;
-        // The page reads poses, of a robot too.
-        let checked = &Clip { coordinates: None, ..source.slice(0..CHECKED) };
+        let checked = &source.slice(0..CHECKED);
         let controls = Controls { strength: STRENGTH, ..Controls::default() };
         let played = (self.player.play)(&self.pack, &self.rig, checked, controls);
-        let played = played.map_err(|error| ViewError::Pack { name: self.name.to_owned(), error })?;
-        let joints = self.rig.joints();
-        let text = |clip: &Clip| {
-            let words: Vec<u32> = self.rig.poses(clip).iter().flat_map(|pose| words(pose, joints)).collect();
-            BASE64_STANDARD.encode(bytemuck::cast_slice(&words))
-        };
+        let played = played.map_err(|error| ViewError::Pack { name: self.of.name.clone(), error })?;
+        let text = |clip: &Clip| BASE64_STANDARD.encode(bytemuck::cast_slice(&frames(&self.rig, clip)));
         Ok(SceneData {
             source: text(&source),
             target: target.as_ref().map(text),
-            digest: digest(&self.rig.poses(&played), joints),
+            digest: hash(frames(&self.rig, &played).into_iter()),
         })
     }
 }
 
+/// Bits of a clip's frames as the page has them: poses of a body, coordinates of a machine.
+fn frames(rig: &Rig, clip: &Clip) -> Vec<u32> {
+    if rig.frames().travels() {
+        return rig.poses(clip).iter().flat_map(|pose| words(pose, rig.joints())).collect();
+    }
+    rig.frames_of(clip).iter().flat_map(|frame| coordinates(rig, frame)).collect()
+}
+
+/// Bits of a machine's coordinates.
+pub(super) fn coordinates(rig: &Rig, frame: &HostFrame) -> impl Iterator<Item = u32> {
+    let count = rig.frames().coordinates();
+    frame.coordinates().iter().take(count).map(|x| x.to_bits()).collect::<Vec<_>>().into_iter()
+}
+
 /// Bits of a pose: the root, then the quaternions `x y z w`.
-fn words(pose: &HostPose, joints: usize) -> impl Iterator<Item = u32> {
+pub(super) fn words(pose: &HostPose, joints: usize) -> impl Iterator<Item = u32> {
     let rotations = pose.rotations.iter().take(joints).flat_map(|q| q.coords.iter());
     pose.root.iter().chain(rotations).map(|x| x.to_bits())
 }
@@ -172,8 +192,12 @@ fn legs(skeleton: &Skeleton, map: &JointMap) -> Vec<usize> {
     legs
 }
 
-/// A joint of a pack in which manners show: an elbow.
+/// A joint of a pack in which manners show: an elbow, or what a machine moves first.
 pub(super) fn first_joint(body: Option<&BodyData>) -> String {
+    let moves = |body: &BodyData| body.machine.as_ref().and_then(MachineData::first_moving);
+    if let Some((body, joint)) = body.and_then(|body| Some((body, moves(body)?))) {
+        return body.joints[joint].name.clone();
+    }
     let elbow = |joint: &&JointData| joint.part == Some(Canonical::LElbow.name());
     let joints = body.map_or(&[][..], |body| &body.joints);
     joints.iter().find(elbow).or(joints.first()).map_or_else(String::new, |joint| joint.name.clone())

@@ -7,6 +7,9 @@ use super::defaults::Defaults;
 use super::pose::Angles;
 use super::source::Source;
 
+/// Attributes of a joint that are read.
+pub(super) const ATTRIBUTES: [&str; 6] = ["type", "axis", "range", "limited", "pos", "ref"];
+
 /// How a joint moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {

@@ -6,6 +6,7 @@
 
 mod defaults;
 mod equality;
+mod geom;
 mod joint;
 mod pose;
 mod source;
@@ -16,9 +17,11 @@ use std::path::Path;
 use nalgebra::{Isometry3, Translation3, Vector3};
 
 use self::defaults::Defaults;
+use self::geom::Geoms;
 use self::joint::Axis;
 use self::pose::Angles;
 use self::source::Source;
+use super::shape::Shape;
 use super::{Motion, Robot, RobotError, RobotJoint};
 
 /// Root link of a description that has no single robot.
@@ -27,9 +30,15 @@ const WORLD: &str = "world";
 /// Reads the text of an MJCF; included files are those of `folder`.
 pub(super) fn parse(text: &str, folder: Option<&Path>) -> Result<Robot, RobotError> {
     let source = Source::read(text, folder)?;
-    let reader = Reader { angles: Angles::read(&source)?, defaults: Defaults::read(&source)?, source: &source };
+    let reader = Reader {
+        angles: Angles::read(&source)?,
+        defaults: Defaults::read(&source, "joint", &joint::ATTRIBUTES)?,
+        geoms: Geoms::read(&source)?,
+        source: &source,
+    };
     let mut found = reader.bodies()?;
     let (root, mut notes) = found.root(&source);
+    notes.append(&mut found.notes);
     let name = source.get(0, "model").filter(|name| !name.is_empty()).unwrap_or("robot").to_owned();
     let (mut joints, references) = found.joints(&source, root)?;
     if joints.is_empty() {
@@ -41,13 +50,14 @@ pub(super) fn parse(text: &str, folder: Option<&Path>) -> Result<Robot, RobotErr
             notes.push(format!("<{tag}>: what it couples is not kept"));
         }
     }
-    Ok(Robot { name, joints, notes })
+    Ok(Robot { name, joints, shapes: found.shapes, notes })
 }
 
 struct Reader<'a> {
     source: &'a Source,
     angles: Angles,
     defaults: Defaults,
+    geoms: Geoms,
 }
 
 /// A body on its way into the tree.
@@ -67,12 +77,17 @@ type Open<'a> = (usize, Option<usize>, Isometry3<f64>, Option<&'a str>);
 
 struct Found {
     bodies: Vec<Body>,
+    /// How they look.
+    shapes: Vec<Shape>,
+    /// What is not drawn.
+    notes: Vec<String>,
 }
 
 impl Reader<'_> {
     /// All bodies, each after the one that holds it.
     fn bodies(&self) -> Result<Found, RobotError> {
         let mut bodies: Vec<Body> = Vec::new();
+        let (mut shapes, mut undrawn) = (Vec::new(), Vec::new());
         let mut names = HashSet::new();
         let mut unnamed = 0;
         let mut open: Vec<Open> = Vec::new();
@@ -112,6 +127,15 @@ impl Reader<'_> {
                             body.axes.push(axis);
                         }
                     }
+                    "geom" => {
+                        let link = body.and_then(|body| bodies.get(body)).map_or(WORLD, |body| body.name.as_str());
+                        match self.geoms.shape(self.source, &self.angles, child, class, &frame) {
+                            Ok(shape) => shapes.extend(shape.map(|shape| Shape { link: link.to_owned(), ..shape })),
+                            Err(RobotError { place, what, .. }) => {
+                                undrawn.push(format!("{place}: {what}: this part of '{link}' is not drawn"));
+                            }
+                        }
+                    }
                     tag @ ("replicate" | "attach" | "composite" | "flexcomp") => self.made(child, tag)?,
                     _ => {}
                 }
@@ -124,7 +148,7 @@ impl Reader<'_> {
                 bodies[parent].moves = true;
             }
         }
-        Ok(Found { bodies })
+        Ok(Found { bodies, shapes, notes: undrawn })
     }
 
     /// Refuses what MuJoCo itself would make bodies or joints of; geometry may be made as it likes.

@@ -55,12 +55,14 @@ function show() {
     kinesic.results.push(emotion.track);
     figures.push(...emotion.figures());
   }
+  const rooms = figures.map(({ track }) => room(track.source ?? track));
+  const most = (of) => Math.max(...rooms.map((each) => each[of]));
+  kinesic.scene.stand(figures.length, { height: most("height"), reach: most("reach") });
   const placed = figures.map((figure, k) => {
     const [x, , z] = (figure.track.source ?? figure.track).place(0);
-    return { ...figure, index: k, shift: [(k - (figures.length - 1) / 2) * SLOT - x, -z] };
+    return { ...figure, index: k, shift: [(k - (figures.length - 1) / 2) * kinesic.scene.slot - x, -z] };
   });
   kinesic.figures = placed;
-  kinesic.scene.stand(placed.length);
   const { rate } = figures[0].track;
   kinesic.frames = Math.round(duration * rate) + 1;
   kinesic.duration = Math.max(1e-3, (kinesic.frames - 1) / rate);
@@ -68,12 +70,26 @@ function show() {
   seek(Math.min(kinesic.time, kinesic.duration));
   $("legend").replaceChildren(...placed.map((figure) =>
     element("li", {}, element("i", { style: `background: var(--c${figure.index % 6})` }), figure.says ?? figure.name + (figure.role === "result" ? " (result)" : ""))));
-  const names = figures[0].track.pack.joints.map(({ name }) => name);
+  const names = moving(figures[0].track.pack);
   const chosen = $("joint").selectedOptions[0]?.textContent ?? data.joint;
-  $("joint").replaceChildren(...names.map((name, joint) => element("option", { value: joint, textContent: name })));
-  $("joint").value = Math.max(0, names.indexOf(chosen));
-  kinesic.joint = Number($("joint").value);
-  $("scene").setAttribute("aria-label", `Skeletons side by side: ${placed.map(({ name }) => name).join(", ")}`);
+  $("joint").replaceChildren(...names.map(([name, joint]) => element("option", { value: joint, textContent: name })));
+  choose((names.find(([name]) => name === chosen) ?? names[0])[1]);
+  $("scene").setAttribute("aria-label", `Figures side by side: ${placed.map(({ name }) => name).join(", ")}`);
+  kinesic.stale = true;
+}
+
+// Name and index of the joints that can be plotted.
+const moving = ({ joints, machine }) =>
+  joints.map(({ name }, joint) => [name, joint]).filter(([, joint]) => !machine || machine.joints[joint].coordinate !== null);
+
+// Plots another joint, in its unit.
+function choose(joint) {
+  const { machine } = kinesic.figures[0].track.pack;
+  $("joint").value = kinesic.joint = joint;
+  const unit = machine?.joints[joint].slides ? "mm" : "degrees";
+  $("angle-caption").textContent = machine ? `Coordinate, ${unit}` : "Rotation from rest, degrees";
+  $("speed-caption").textContent = machine ? `Speed, ${unit} per second` : "Speed, m/s";
+  $("feet-plot").hidden = Boolean(machine);
   kinesic.stale = true;
 }
 
@@ -183,7 +199,7 @@ async function compare(module) {
     const core = await Core.make(module, pack);
     for (const scene of data.scenes[index]) {
       const poses = floats(scene.source);
-      const source = new Track(pack, poses.length / (3 + 4 * pack.joints.length));
+      const source = new Track(pack, poses.length / width(pack));
       source.poses.set(poses);
       kinesic.bits.push({ pack: pack.name, frames: Math.min(data.checked, source.frames), here: digest(core, source, data.strength, data.checked), host: scene.digest });
       await new Promise((done) => setTimeout(done));
@@ -215,7 +231,7 @@ kinesic.state = () => ({
 async function motions(module) {
   const { data } = kinesic;
   for (const pack of data.packs) {
-    pack.bones = bones(pack);
+    prepared(pack);
     kinesic.cores.push(await Core.make(module, pack));
     kinesic.controls.push({ strength: 1, mask: pack.joints.map(() => 1), shown: true, other: null });
   }
@@ -227,7 +243,7 @@ async function motions(module) {
   $("clip").addEventListener("change", () => { kinesic.clip = Number($("clip").value); kinesic.time = 0; show(); });
   $("clip").closest("label").hidden = !data.clips.length;
   $("packs").append(...data.packs.map(panel), ...kinesic.emotions.map((emotion) => emotion.panel()));
-  $("joint").addEventListener("change", () => { kinesic.joint = Number($("joint").value); kinesic.stale = true; });
+  $("joint").addEventListener("change", () => choose(Number($("joint").value)));
   const rate = () => (kinesic.frames - 1) / kinesic.duration;
   const step = (frames) => { play(false); seek(Math.round(kinesic.time * rate() + frames) / rate()); };
   $("time").addEventListener("input", () => seek(Number($("time").value) / rate()));

@@ -45,7 +45,7 @@ function panel(pack, index) {
   const set = element("fieldset", {}, element("legend", { textContent: pack.name }));
   const shown = element("input", { type: "checkbox", id: `shown-${index}`, checked: true });
   shown.addEventListener("change", () => { state.shown = shown.checked; show(); });
-  set.append(element("p", { className: "soft small", textContent: `${pack.engine}, ${pack.joints.length} joints, ${pack.rate} frames a second, ${pack.size} bytes` }));
+  set.append(element("p", { className: "soft small", textContent: `${pack.engine}, ${moving(pack).length} joints, ${pack.rate} frames a second, ${pack.size} bytes` }));
   set.append(element("label", {}, shown, " shown"));
   set.append(slider({ id: `strength-${index}`, label: `${label} (${help})`, min: -0.5, max: 2.5, step: 0.05, value: state.strength,
     change: (value) => { state.strength = value; changed(); } }), warning);
@@ -75,10 +75,10 @@ function mixed(index) {
 // Weights of the joints.
 function mask(pack, index, changed) {
   const weights = kinesic.controls[index].mask;
-  const sliders = pack.joints.map(({ name }, joint) =>
-    slider({ id: `mask-${index}-${joint}`, label: name, min: 0, max: 1, step: 0.05, value: 1, change: (value) => { weights[joint] = value; changed(); } }));
+  const sliders = moving(pack).map(([name, joint]) =>
+    [joint, slider({ id: `mask-${index}-${joint}`, label: name, min: 0, max: 1, step: 0.05, value: 1, change: (value) => { weights[joint] = value; changed(); } })]);
   const all = (choose) => () => {
-    sliders.forEach((made, joint) => {
+    sliders.forEach(([joint, made]) => {
       const input = made.querySelector("input");
       const value = choose(joint);
       if (value === null || Number(input.value) === value) return;
@@ -92,8 +92,8 @@ function mask(pack, index, changed) {
     return made;
   };
   const legs = new Set(pack.legs);
-  return element("details", {}, element("summary", { textContent: "Joints" }),
-    element("div", { className: "buttons" }, button("all", "all", () => 1), button("none", "none", () => 0),
-      button("upper", "upper body", (joint) => (legs.has(joint) ? 0 : 1)), button("legs", "legs", (joint) => (legs.has(joint) ? 1 : 0))),
-    element("div", { className: "mask" }, ...sliders));
+  const buttons = element("div", { className: "buttons" }, button("all", "all", () => 1), button("none", "none", () => 0));
+  if (legs.size) buttons.append(button("upper", "upper body", (joint) => (legs.has(joint) ? 0 : 1)), button("legs", "legs", (joint) => (legs.has(joint) ? 1 : 0)));
+  return element("details", {}, element("summary", { textContent: "Joints" }), buttons,
+    element("div", { className: "mask" }, ...sliders.map(([, made]) => made)));
 }

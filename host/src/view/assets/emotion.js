@@ -5,8 +5,8 @@ class EmotionCore {
     const core = new EmotionCore();
     core.exports = await instance(module, pack, "load_emotion");
     const view = (address, length) => new Float32Array(core.exports.memory.buffer, address, length);
-    core.output = view(core.exports.output(), 3 + 4 * pack.joints.length);
-    core.positions = view(core.exports.positions(), 3 * pack.joints.length);
+    core.output = view(core.exports.output(), width(pack));
+    core.positions = places(core.exports, pack);
     core.strengths = view(core.exports.strengths(), pack.attributes.length);
     core.playing = view(core.exports.playing(), pack.attributes.length);
     return core;
@@ -51,8 +51,7 @@ class EmotionTrack extends Track {
     const { core, done } = this;
     core.exports.step_emotion(this.dt);
     this.pose(done).set(core.output);
-    core.exports.place(1);
-    this.place(done).set(core.positions);
+    this.place(done).set(core.positions(1));
     this.played.set(core.playing, done * core.playing.length);
     this.done += 1;
   }
@@ -78,7 +77,7 @@ class EmotionTrack extends Track {
 // An emotion pack on the page: the motion as its sliders are, beside the one at the strengths of the start.
 class Emotion {
   static async make(module, pack, index) {
-    pack.bones = bones(pack);
+    prepared(pack);
     const emotion = new Emotion();
     Object.assign(emotion, { pack, index, core: await EmotionCore.make(module, pack), controls: { strength: starts(pack), shown: true } });
     return emotion;
@@ -126,7 +125,7 @@ class Emotion {
     const { pack, index, controls } = this;
     const set = element("fieldset", {}, element("legend", { textContent: pack.name }));
     set.append(element("p", { className: "soft small", textContent: `emotion strength, motion ${pack.motion}${pack.seconds === null ? ", a cycle" : ""}; ` +
-      `${pack.joints.length} joints, ${pack.rate} frames a second, ${pack.size} bytes` }));
+      `${moving(pack).length} joints, ${pack.rate} frames a second, ${pack.size} bytes` }));
     // The only figures of a page stay.
     if (kinesic.data.packs.length + kinesic.data.emotions.length > 1) {
       const shown = element("input", { type: "checkbox", id: `emotion-shown-${index}`, checked: true });

@@ -27,28 +27,45 @@ class Core {
     const core = new Core();
     const exports = await instance(module, pack, "load");
     const { buffer } = exports.memory;
-    const joints = pack.joints.length;
-    const pose = (address) => new Float32Array(buffer, address, 3 + 4 * joints);
+    const frame = (address) => new Float32Array(buffer, address, width(pack));
     core.exports = exports;
-    core.input = pose(exports.input());
-    core.other = pose(exports.other());
-    core.output = pose(exports.output());
-    core.mask = new Float32Array(buffer, exports.mask(), joints);
-    core.positions = new Float32Array(buffer, exports.positions(), 3 * joints);
+    core.input = frame(exports.input());
+    core.other = frame(exports.other());
+    core.output = frame(exports.output());
+    core.mask = new Float32Array(buffer, exports.mask(), pack.joints.length);
+    core.positions = places(exports, pack);
     return core;
   }
 }
 
-// Parent and child of every bone.
-const bones = (pack) => pack.joints.flatMap(({ parent }, joint) => (parent === null ? [] : [[parent, joint]]));
+// Numbers of a frame: coordinates of a machine, or a body's pose, which is the root and a quaternion a joint.
+const width = (pack) => (pack.machine ? pack.machine.coordinates : 3 + 4 * pack.joints.length);
 
-// Poses and the places of their joints, frame by frame.
+// Gives the places of the joints of a frame that lies in a core: 0 = its input, 1 = its output.
+function places(exports, pack) {
+  const { buffer } = exports.memory;
+  const at = new Float32Array(buffer, exports.positions(), 3 * pack.joints.length);
+  const frames = [exports.input(), exports.output()].map((address) => new Float32Array(buffer, address, width(pack)));
+  return (which) => {
+    if (pack.machine) return pack.machine.positions(frames[which]);
+    exports.place(which);
+    return at;
+  };
+}
+
+// Reads once what is drawn of a pack: parent and child of every bone, or the links of a machine.
+function prepared(pack) {
+  pack.bones = pack.joints.flatMap(({ parent }, joint) => (parent === null ? [] : [[parent, joint]]));
+  if (pack.machine) pack.machine = new Machine(pack.machine);
+}
+
+// Frames and the places of their joints.
 class Track {
   constructor(pack, frames) {
     this.pack = pack;
     this.frames = frames;
     this.rate = pack.rate;
-    this.width = 3 + 4 * pack.joints.length;
+    this.width = width(pack);
     this.poses = new Float32Array(frames * this.width);
     this.places = new Float32Array(frames * 3 * pack.joints.length);
   }
@@ -68,12 +85,11 @@ class Track {
 
   // Recorded poses.
   static recorded(core, pack, poses) {
-    const track = new Track(pack, poses.length / (3 + 4 * pack.joints.length));
+    const track = new Track(pack, poses.length / width(pack));
     track.poses.set(poses);
     for (let frame = 0; frame < track.frames; frame++) {
       core.input.set(track.pose(frame));
-      core.exports.place(0);
-      track.place(frame).set(core.positions);
+      track.place(frame).set(core.positions(0));
     }
     return track;
   }
@@ -92,15 +108,18 @@ class Track {
     return sum.map((of) => of / (2 * around + 1));
   }
 
-  // Angle of a joint's rotation, degrees.
+  // Angle of a joint's rotation, degrees; of a machine its coordinate, degrees or mm.
   angle(frame, joint) {
+    const { machine } = this.pack;
+    if (machine) return machine.shown(machine.joints[joint], this.pose(frame));
     return (360 / Math.PI) * Math.acos(Math.min(1, Math.abs(this.poses[frame * this.width + 6 + 4 * joint])));
   }
 
-  // Speed of a joint, m/s.
+  // Speed of a joint, m/s; of a machine that of its coordinate, degrees or mm per second.
   speed(frame, joint) {
     const [before, after] = [Math.max(0, frame - 1), Math.min(this.frames - 1, frame + 1)];
     if (after === before) return 0;
+    if (this.pack.machine) return ((this.angle(after, joint) - this.angle(before, joint)) * this.rate) / (after - before);
     const [a, b] = [this.place(before), this.place(after)];
     const k = 3 * joint;
     return (Math.hypot(b[k] - a[k], b[k + 1] - a[k + 1], b[k + 2] - a[k + 2]) * this.rate) / (after - before);
@@ -154,8 +173,7 @@ class Result extends Track {
       core.exports.step(this.strength);
     }
     this.pose(done).set(core.output);
-    core.exports.place(1);
-    this.place(done).set(core.positions);
+    this.place(done).set(core.positions(1));
     this.done += 1;
   }
 

@@ -33,11 +33,13 @@ class Plot {
     context.clearRect(0, 0, width, height);
     const curves = figures.map(({ track }) => Float32Array.from({ length: track.frames }, (_, frame) => value(track, frame)));
     const most = Math.max(1e-3, ...curves.map((curve) => curve.reduce((a, b) => Math.max(a, b), 0)));
-    const y = (v) => height - 4 - (v / most) * (height - 10);
+    const least = Math.min(0, ...curves.map((curve) => curve.reduce((a, b) => Math.min(a, b), 0)));
+    const y = (v) => height - 4 - ((v - least) / (most - least)) * (height - 10);
     context.fillStyle = colours.soft;
     context.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
     context.textAlign = "left";
     context.fillText(most.toPrecision(3), 4, 13 * devicePixelRatio);
+    if (least < 0) context.fillText(least.toPrecision(3), 4, height - 6);
     figures.forEach(({ track, colour }, k) => {
       context.strokeStyle = colour;
       context.lineWidth = 1.6 * devicePixelRatio;

@@ -1,30 +1,35 @@
-// Skeletons in space on a plain canvas: a camera that turns about a point, lines and discs.
+// Figures in space on a plain canvas: a camera that turns about a point; people as lines and discs, robots as solids.
 
-const SLOT = 1.3; // metres between figures
 const UPRIGHT = { yaw: 0.35, pitch: 0.2 };
+
+// Room that a track needs, m: a person's, or what a robot reaches in it.
+const room = (track) => track.pack.machine?.extent(track) ?? { height: 1.75, reach: 0.65 };
 
 class Scene {
   constructor(canvas) {
     this.canvas = canvas;
     this.context = canvas.getContext("2d");
+    this.painter = new Painter(this.context);
     this.target = [0, 0.9, 0];
-    this.count = 1;
+    Object.assign(this, { count: 1, slot: 1.3, size: 1 });
     this.reset();
     this.listen();
   }
 
-  // As many figures stand there: all of them are to be seen, unless the person has chosen a view.
-  stand(count) {
-    this.count = count;
+  // As many figures stand there, each with so much room: all of them are to be seen, unless the person has chosen a view.
+  stand(count, { height, reach }) {
+    // `slot`: metres between figures; `size`: against a person.
+    Object.assign(this, { count, slot: 2 * reach, size: Math.max(height / 1.75, 0.85 * reach) });
+    this.target[1] = 0.5 * height + 0.025 * this.size;
     if (!this.moved) this.reset();
   }
 
   // So far away that people with their arms up, and a row of them, fill the picture.
   reset() {
     const [width, height] = fit(this.canvas);
-    const row = SLOT * (this.count - 1);
-    const across = (focal(width, height) / width) * (row + 1.1) + 0.5 * row * Math.sin(UPRIGHT.yaw);
-    this.camera = { ...UPRIGHT, distance: Math.max(across, (focal(width, height) / height) * 3.25) };
+    const row = this.slot * (this.count - 1);
+    const across = (focal(width, height) / width) * (row + 1.1 * this.size) + 0.5 * row * Math.sin(UPRIGHT.yaw);
+    this.camera = { ...UPRIGHT, distance: Math.max(across, (focal(width, height) / height) * 3.25 * this.size) };
     this.moved = false;
   }
 
@@ -36,7 +41,7 @@ class Scene {
 
   zoom(factor) {
     this.moved = true;
-    this.camera.distance = Math.max(1.5, Math.min(30, this.camera.distance * factor));
+    this.camera.distance = Math.max(1.5 * this.size, Math.min(30 * this.size, this.camera.distance * factor));
   }
 
   listen() {
@@ -76,41 +81,92 @@ class Scene {
     });
   }
 
-  // Sizes the canvas to its box and returns the projection of a point to [x, y, pixels a metre], or null behind the camera.
+  // Sizes the canvas to its box. `point` projects x, y, z to [x, y, pixels a metre], or null behind the camera; `project` the three
+  // numbers at an index of one array to x, y and depth in another.
   projection() {
     const [width, height] = fit(this.canvas);
     const { yaw, pitch, distance } = this.camera;
     const [sy, cy, sp, cp] = [Math.sin(yaw), Math.cos(yaw), Math.sin(pitch), Math.cos(pitch)];
     const scaled = focal(width, height);
-    return (x, y, z) => {
-      const [dx, dy, dz] = [x - this.target[0], y - this.target[1], z - this.target[2]];
-      const right = cy * dx - sy * dz;
+    const [tx, ty, tz] = this.target;
+    const project = (from, k, to) => {
+      const [dx, dy, dz] = [from[k] - tx, from[k + 1] - ty, from[k + 2] - tz];
       const away = -(sy * dx + cy * dz);
       const depth = distance + cp * away - sp * dy;
-      if (depth < 0.2) return null;
       const scale = scaled / depth;
-      return [width / 2 + scale * right, height / 2 - scale * (cp * dy + sp * away), scale];
+      to[k] = width / 2 + scale * (cy * dx - sy * dz);
+      to[k + 1] = height / 2 - scale * (cp * dy + sp * away);
+      to[k + 2] = depth;
     };
+    const made = [0, 0, 0];
+    const point = (...at) => {
+      project(at, 0, made);
+      return made[2] < 0.2 * this.size ? null : [made[0], made[1], scaled / made[2]];
+    };
+    return { point, project, eye: this.size };
   }
 
   // Figures: { track, frame, shift: [x, z], colour, name, stands: [joint] }.
   draw(figures, colours) {
-    const project = this.projection();
-    const { context } = this;
+    const view = this.projection();
+    const { context, painter } = this;
     context.clearRect(0, 0, this.canvas.width, this.canvas.height);
-    this.ground(project, colours);
-    for (const figure of figures) this.figure(project, figure, colours);
+    this.ground(view.point, colours);
+    painter.begin();
+    for (const figure of figures) {
+      if (figure.track.pack.machine) this.robot(view, figure);
+      else this.person(view.point, figure, colours);
+    }
+    painter.paint();
+    for (const figure of figures.filter(({ track }) => track.pack.machine)) this.named(view.point, figure, colours);
+  }
+
+  // A robot's solids, and a disc in the figure's colour under it: its parts have their own.
+  robot(view, { track, frame, shift, colour }) {
+    const { machine } = track.pack;
+    const { context } = this;
+    const spot = view.point(shift[0], 0, shift[1]);
+    if (spot) {
+      context.globalAlpha = 0.3;
+      context.fillStyle = colour;
+      context.beginPath();
+      const radius = 0.42 * this.slot * spot[2];
+      context.ellipse(spot[0], spot[1], radius, radius * Math.max(0.1, Math.sin(Math.abs(this.camera.pitch))), 0, 0, 7);
+      context.fill();
+      context.globalAlpha = 1;
+    }
+    const plain = rgb(context, colour);
+    const frames = machine.place(track.pose(frame));
+    machine.links.forEach(({ solids }, link) => {
+      for (const solid of solids) this.painter.add(solid, frames.subarray(7 * link, 7 * link + 7), shift, plain, view);
+    });
+  }
+
+  // A robot's name, over it.
+  named(point, { track, shift, name }, colours) {
+    const top = point(shift[0], 2 * this.target[1], shift[1]);
+    if (top) this.label(name, top[0], top[1], colours);
+  }
+
+  label(name, x, y, colours) {
+    const { context } = this;
+    context.fillStyle = colours.ink;
+    context.font = `${13 * devicePixelRatio}px system-ui, sans-serif`;
+    context.textAlign = "center";
+    context.fillText(name, x, y);
   }
 
   ground(project, colours) {
     const { context } = this;
-    const [cx, cz] = [Math.round(this.target[0]), Math.round(this.target[2])];
+    // Squares of a metre under people, of ten centimetres under a desk robot.
+    const step = this.size < 0.4 ? 0.1 : 1;
+    const [cx, cz] = [Math.round(this.target[0] / step), Math.round(this.target[2] / step)];
     context.strokeStyle = colours.line;
     context.lineWidth = devicePixelRatio;
     const reach = 5;
     for (let k = -reach; k <= reach; k++) {
       for (const [from, to] of [[[cx + k, cz - reach], [cx + k, cz + reach]], [[cx - reach, cz + k], [cx + reach, cz + k]]]) {
-        const [a, b] = [project(from[0], 0, from[1]), project(to[0], 0, to[1])];
+        const [a, b] = [project(step * from[0], 0, step * from[1]), project(step * to[0], 0, step * to[1])];
         if (!a || !b) continue;
         context.beginPath();
         context.moveTo(a[0], a[1]);
@@ -120,7 +176,7 @@ class Scene {
     }
   }
 
-  figure(project, { track, frame, shift, colour, name, stands }, colours) {
+  person(project, { track, frame, shift, colour, name, stands }, colours) {
     const { context } = this;
     const places = track.place(frame);
     const at = (joint) => [places[3 * joint] + shift[0], places[3 * joint + 1], places[3 * joint + 2] + shift[1]];
@@ -158,11 +214,7 @@ class Scene {
       context.arc(spot[0], spot[1] - (joint === track.pack.head ? 0.06 * spot[2] : 0), Math.max(1.5, size * spot[2]), 0, 7);
       context.fill();
     }
-    if (!top) return;
-    context.fillStyle = colours.ink;
-    context.font = `${13 * devicePixelRatio}px system-ui, sans-serif`;
-    context.textAlign = "center";
-    context.fillText(name, top[0], top[1] - 0.2 * top[2]);
+    if (top) this.label(name, top[0], top[1] - 0.2 * top[2], colours);
   }
 }
 
@@ -170,16 +222,14 @@ class Scene {
 function tip(track, frame, joint, { tip: offset }, place) {
   const pose = track.pose(frame);
   let v = offset;
-  for (let at = joint; at !== null; at = track.pack.joints[at].parent) {
-    const [x, y, z, w] = pose.subarray(3 + 4 * at, 7 + 4 * at);
-    const t = [2 * (y * v[2] - z * v[1]), 2 * (z * v[0] - x * v[2]), 2 * (x * v[1] - y * v[0])];
-    v = [
-      v[0] + w * t[0] + y * t[2] - z * t[1],
-      v[1] + w * t[1] + z * t[0] - x * t[2],
-      v[2] + w * t[2] + x * t[1] - y * t[0],
-    ];
-  }
+  for (let at = joint; at !== null; at = track.pack.joints[at].parent) v = turned(pose.subarray(3 + 4 * at, 7 + 4 * at), v);
   return [place[0] + v[0], place[1] + v[1], place[2] + v[2]];
+}
+
+// A colour of the page as red, green, blue, 0 to 1.
+function rgb(context, colour) {
+  context.fillStyle = colour;
+  return [1, 3, 5].map((at) => parseInt(context.fillStyle.slice(at, at + 2), 16) / 255);
 }
 
 // Pixels that something a metre wide has in a metre's distance.

@@ -1,4 +1,4 @@
-//! Reads a URDF: joints, where they are, what they may do.
+//! Reads a URDF: joints, where they are, what they may do; in `visual` how links look.
 //!
 //! <http://wiki.ros.org/urdf/XML/joint>: metres, radians; an origin is `Rz(yaw) Ry(pitch) Rx(roll)`, the axis is in the joint's frame and
 //! (1, 0, 0) unless given.
@@ -8,6 +8,8 @@ use std::path::Path;
 
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use roxmltree::{Document, Node};
+
+mod visual;
 
 use super::{Mimic, Motion, Robot, RobotError, RobotJoint, mjcf};
 use crate::files;
@@ -91,7 +93,8 @@ impl Robot {
             return Err(RobotError::new("<robot>", "found no joint, expected at least one", "is this the whole file?"));
         }
         let name = root.attribute("name").unwrap_or("robot").to_owned();
-        Ok(Self { name, joints: tree(joints)?, notes: Vec::new() })
+        let (shapes, notes) = visual::read(root, &line);
+        Ok(Self { name, joints: tree(joints)?, shapes, notes })
     }
 }
 

@@ -1,0 +1,209 @@
+//! The links of a description.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use nalgebra::Vector3;
+
+use super::solid::thinned;
+use super::{Drive, Link, Look, Solid, Way, mesh};
+use crate::robot::shape::Form;
+use crate::robot::{Machine, Motion, POSE, Robot, RobotError};
+
+/// Triangles of a robot at most: a page draws several robots, sixty times a second, without a graphics processor.
+pub const TRIANGLES: usize = 4000;
+
+/// What a machine moves in a description that calls it otherwise.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drives {
+    /// A pose or a joint of the machine.
+    pub name: String,
+    /// The link that the pose moves, or the joint.
+    pub what: String,
+}
+
+impl Look {
+    /// The robot of a description, moved by a machine's coordinates. Meshes are files around `folder`; what of them cannot be read is noted.
+    /// Loops are not kept: rods between a platform and its motors stand still. Refuses a description that lacks joints of the machine, and
+    /// names that neither has.
+    pub fn of_robot(machine: &Machine, robot: &Robot, folder: &Path, drives: &[Drives]) -> Result<Self, RobotError> {
+        let plain = Self::of_machine(machine);
+        let poses = poses(machine);
+        let mut look = Self { links: Vec::new(), joints: vec![0; plain.joints.len()], notes: robot.notes.clone() };
+        look.links.push(Link { solids: Vec::new(), ..plain.links[0].clone() });
+        // What poses move comes first: links hang on it.
+        let (mut first, mut last): (HashMap<&str, usize>, HashMap<&str, usize>) = (HashMap::new(), HashMap::new());
+        for &(joint, pose) in &poses {
+            first.entry(pose).or_insert(look.links.len());
+            let parent = plain.links[joint].parent.map(|parent| look.joints[parent]);
+            look.joints[joint] = look.links.len();
+            look.links.push(Link { parent, solids: Vec::new(), ..plain.links[joint].clone() });
+            last.insert(pose, look.joints[joint]);
+        }
+        let (mut carried, mut renamed) = (HashMap::new(), HashMap::new());
+        let zero = robot.frames();
+        for Drives { name, what } in drives {
+            let place = format!("{name}={what}");
+            if let Some(carrier) = last.get(name.as_str()) {
+                let links: Vec<&str> = robot.joints.iter().map(|joint| joint.child.as_str()).collect();
+                let named = known(&place, what, "link that a joint carries", &links)?;
+                // A pose turns about the link's origin, with the axes of the base, and moves all that is fixed to the link.
+                let centre = zero[named].translation;
+                look.links[first[name.as_str()]].at.translation.vector += centre.vector;
+                let whole = robot.chain(named).find(|joint| robot.joints[*joint].motion != Motion::Fixed).unwrap_or(named);
+                carried.insert(whole, (*carrier, centre.inverse() * zero[whole]));
+            } else {
+                let own: Vec<&str> = machine.rig.skeleton.joints.iter().map(|joint| joint.name.as_str()).collect();
+                let poses = last.keys().copied();
+                known(&place, name, "pose or joint of the pack", &own.iter().copied().chain(poses).collect::<Vec<_>>())?;
+                let joints: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
+                renamed.insert(name.as_str(), known(&place, what, "joint of the description", &joints)?);
+            }
+        }
+        let mut place: HashMap<usize, usize> = HashMap::new();
+        for at in robot.depth_first() {
+            let joint = &robot.joints[at];
+            let way = match joint.motion {
+                Motion::Revolute | Motion::Continuous => Way::Turns,
+                Motion::Prismatic => Way::Slides,
+                Motion::Fixed | Motion::Other(_) => Way::Fixed,
+            };
+            let (parent, from, way) = match carried.get(&at) {
+                Some((carrier, from)) => (*carrier, *from, Way::Fixed),
+                None => (joint.parent.map_or(0, |parent| place[&parent]), joint.origin, way),
+            };
+            place.insert(at, look.links.len());
+            look.links.push(Link { parent: Some(parent), at: from, way, axis: joint.axis, drive: None, solids: Vec::new() });
+        }
+        look.drive(machine, robot, &place, |joint| poses.iter().any(|(pose, _)| *pose == joint), &renamed)?;
+        look.shape(robot, folder, &place);
+        for (pose, link) in last.into_iter().filter(|(pose, _)| !drives.iter().any(|one| one.name == *pose)) {
+            look.links[link].solids.push(Solid::cuboid(&Vector3::repeat(0.05)));
+            look.notes.push(format!("pose '{pose}' is drawn as a box: say which link it moves, with --drives {pose}=LINK"));
+        }
+        Ok(look.standing())
+    }
+
+    /// Gives links their coordinates: joints of the machine, and what follows them.
+    fn drive(
+        &mut self,
+        machine: &Machine,
+        robot: &Robot,
+        place: &HashMap<usize, usize>,
+        is_pose: impl Fn(usize) -> bool,
+        renamed: &HashMap<&str, usize>,
+    ) -> Result<(), RobotError> {
+        let places: Vec<_> = machine.rig.frames().places().collect();
+        let mut coordinates: HashMap<usize, usize> = HashMap::new();
+        let mut missing = Vec::new();
+        for (at, joint) in machine.rig.skeleton.joints.iter().enumerate().skip(1) {
+            if is_pose(at) {
+                continue;
+            }
+            let Some(own) = renamed.get(joint.name.as_str()).copied().or_else(|| robot.find(&joint.name)) else {
+                missing.push(joint.name.as_str());
+                continue;
+            };
+            self.joints[at] = place[&own];
+            if places[at].0.coordinates() > 0 {
+                coordinates.insert(own, places[at].1);
+            }
+        }
+        if !missing.is_empty() {
+            let what = format!("it has no joint {}, expected all joints of the robot's pack", missing.join(", "));
+            let help = format!("where it calls them otherwise, say so: --drives {}=ITS-NAME; kinesic robot show lists its joints", missing[0]);
+            return Err(RobotError::new(format!("robot '{}'", robot.name), what, help));
+        }
+        // What a value of 1 of each coordinate, and what none, makes of every joint: followers are linear.
+        let value = |own: &dyn Fn(usize) -> f64| robot.followed(&(0..robot.joints.len()).map(own).collect::<Vec<_>>());
+        let none = value(&|_| 0.0);
+        for (joint, coordinate) in &coordinates {
+            let one = value(&|at| f64::from(u8::from(at == *joint)));
+            for (at, link) in place {
+                let multiplier = one[*at] - none[*at];
+                if multiplier != 0.0 {
+                    self.links[*link].drive = Some(Drive { coordinate: *coordinate, multiplier, offset: none[*at] });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Gives links their solids.
+    fn shape(&mut self, robot: &Robot, folder: &Path, place: &HashMap<usize, usize>) {
+        let link_of: HashMap<&str, usize> =
+            robot.joints.iter().enumerate().map(|(at, joint)| (joint.child.as_str(), place[&at])).collect();
+        let root = robot.root();
+        let mut solids: Vec<(usize, Solid)> = Vec::new();
+        let (mut unread, mut why) = (Vec::new(), None);
+        for shape in &robot.shapes {
+            let at = match link_of.get(shape.link.as_str()) {
+                Some(at) => *at,
+                None if root.as_deref() == Some(&shape.link) => 0,
+                // It is not the robot's.
+                None => continue,
+            };
+            let parts = match &shape.form {
+                Form::Cuboid(size) => vec![Solid::cuboid(size)],
+                Form::Ellipsoid(half) => vec![Solid::ellipsoid(half)],
+                Form::Cylinder(radius, length) => vec![Solid::cylinder(*radius, *length)],
+                Form::Capsule(radius, length) => vec![Solid::capsule(*radius, *length)],
+                Form::Mesh(file, scale) => mesh::read(file, scale, folder).unwrap_or_else(|error| {
+                    unread.push(at);
+                    why.get_or_insert(error);
+                    Vec::new()
+                }),
+            };
+            let own = |part: Solid| {
+                let colour = shape.colour.or(part.colour);
+                (at, part.placed(&shape.at).coloured(colour))
+            };
+            solids.extend(parts.into_iter().map(own));
+        }
+        let (links, solids): (Vec<usize>, Vec<Solid>) = solids.into_iter().unzip();
+        for (at, solid) in links.into_iter().zip(thinned(solids, TRIANGLES)) {
+            self.links[at].solids.push(solid);
+        }
+        if let Some(why) = why {
+            let count = unread.len();
+            let meshes = if count == 1 { "1 mesh is".to_owned() } else { format!("{count} meshes are") };
+            self.notes.push(format!("{meshes} not drawn, bones stand in: {why}"));
+        }
+        if self.links.iter().all(|link| link.solids.is_empty()) {
+            if unread.is_empty() {
+                self.notes.push("the description says nothing of how its links look: bones show them".to_owned());
+            }
+            unread = (0..self.links.len()).collect();
+        }
+        self.bones(&unread);
+    }
+
+    /// A bone from each of these links, if nothing else shows it, to all that hang on it.
+    fn bones(&mut self, of: &[usize]) {
+        let bare: Vec<bool> = self.links.iter().map(|link| link.solids.is_empty()).collect();
+        for at in 1..self.links.len() {
+            let (to, parent) = (self.links[at].at.translation.vector, self.links[at].parent);
+            if let Some(parent) = parent.filter(|parent| of.contains(parent) && bare[*parent] && to.norm() > 1e-3) {
+                self.links[parent].solids.push(Solid::bone(&to, 0.08 * to.norm()));
+            }
+        }
+    }
+}
+
+/// Joints of the rig that belong to poses, and the names of those.
+fn poses(machine: &Machine) -> Vec<(usize, &str)> {
+    let moving = machine.rig.frames().places().enumerate().filter(|(_, (kind, _))| kind.coordinates() > 0);
+    let poses = moving.zip(&machine.servos).filter(|(_, servo)| servo.id.is_none());
+    let name = |name: &'_ str| POSE.iter().find_map(|end| name.strip_suffix(end)?.strip_suffix('_').map(str::len));
+    poses.filter_map(|((joint, _), servo)| Some((joint, &servo.name[..name(&servo.name)?]))).collect()
+}
+
+/// The index of a name.
+fn known(place: &str, name: &str, kind: &str, names: &[&str]) -> Result<usize, RobotError> {
+    names.iter().position(|known| *known == name).ok_or_else(|| {
+        let near = crate::clip::map::nearest(name, names.iter().copied());
+        let near = near.map_or(String::new(), |near| format!("; did you mean '{near}'?"));
+        let what = format!("'{name}' is no {kind}{near}");
+        RobotError::new(place, what, "`kinesic inspect` lists the joints of a pack, `kinesic robot show` those of a description")
+    })
+}
