@@ -38,8 +38,11 @@ fn source(manner: &Manner, phase: f64, seed: u64) -> Source {
 
 /// Two engines, two clips, a target: four figures.
 fn page(folder: &Path, wasm: &[u8]) -> PathBuf {
-    let packs = [("weary", models::weary()), ("mechanics", models::mechanics())]
-        .map(|(name, file)| ViewPack { name: name.to_owned(), file, look: None });
+    let packs = [("weary", models::weary()), ("mechanics", models::mechanics())].map(|(name, file)| ViewPack {
+        name: name.to_owned(),
+        file,
+        look: None,
+    });
     let target = Some(source(&Manner::WEARY, 0.3, 4));
     let clips =
         [("a walk", source(&Manner::NEUTRAL, 0.3, 3), target), ("a weary walk", source(&Manner::WEARY, 0.0, 2), None)]

@@ -1,7 +1,7 @@
 //! An emotion pack: its strengths, and digests of what the host plays.
 
-use kinesic::model::{ATTRIBUTES, EmotionMeta};
 use kinesic::LoadError;
+use kinesic::model::{ATTRIBUTES, EmotionMeta};
 use serde::Serialize;
 
 use super::scene::{BodyData, CHECKED, coordinates, hash, words};

@@ -27,7 +27,7 @@ impl Look {
     /// Loops are not kept: rods between a platform and its motors stand still. Refuses a description that lacks joints of the machine, and
     /// names that neither has.
     pub fn of_robot(machine: &Machine, robot: &Robot, folder: &Path, drives: &[Drives]) -> Result<Self, RobotError> {
-        let plain = Self::of_machine(machine);
+        let plain = Self::plain(machine);
         let poses = poses(machine);
         let mut look = Self { links: Vec::new(), joints: vec![0; plain.joints.len()], notes: robot.notes.clone() };
         look.links.push(Link { solids: Vec::new(), ..plain.links[0].clone() });
@@ -50,12 +50,18 @@ impl Look {
                 // A pose turns about the link's origin, with the axes of the base, and moves all that is fixed to the link.
                 let centre = zero[named].translation;
                 look.links[first[name.as_str()]].at.translation.vector += centre.vector;
-                let whole = robot.chain(named).find(|joint| robot.joints[*joint].motion != Motion::Fixed).unwrap_or(named);
+                let whole =
+                    robot.chain(named).find(|joint| robot.joints[*joint].motion != Motion::Fixed).unwrap_or(named);
                 carried.insert(whole, (*carrier, centre.inverse() * zero[whole]));
             } else {
                 let own: Vec<&str> = machine.rig.skeleton.joints.iter().map(|joint| joint.name.as_str()).collect();
                 let poses = last.keys().copied();
-                known(&place, name, "pose or joint of the pack", &own.iter().copied().chain(poses).collect::<Vec<_>>())?;
+                known(
+                    &place,
+                    name,
+                    "pose or joint of the pack",
+                    &own.iter().copied().chain(poses).collect::<Vec<_>>(),
+                )?;
                 let joints: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
                 renamed.insert(name.as_str(), known(&place, what, "joint of the description", &joints)?);
             }
@@ -73,13 +79,21 @@ impl Look {
                 None => (joint.parent.map_or(0, |parent| place[&parent]), joint.origin, way),
             };
             place.insert(at, look.links.len());
-            look.links.push(Link { parent: Some(parent), at: from, way, axis: joint.axis, drive: None, solids: Vec::new() });
+            look.links.push(Link {
+                parent: Some(parent),
+                at: from,
+                way,
+                axis: joint.axis,
+                drive: None,
+                solids: Vec::new(),
+            });
         }
         look.drive(machine, robot, &place, |joint| poses.iter().any(|(pose, _)| *pose == joint), &renamed)?;
         look.shape(robot, folder, &place);
         for (pose, link) in last.into_iter().filter(|(pose, _)| !drives.iter().any(|one| one.name == *pose)) {
             look.links[link].solids.push(Solid::cuboid(&Vector3::repeat(0.05)));
-            look.notes.push(format!("pose '{pose}' is drawn as a box: say which link it moves, with --drives {pose}=LINK"));
+            look.notes
+                .push(format!("pose '{pose}' is drawn as a box: say which link it moves, with --drives {pose}=LINK"));
         }
         Ok(look.standing())
     }
@@ -111,7 +125,10 @@ impl Look {
         }
         if !missing.is_empty() {
             let what = format!("it has no joint {}, expected all joints of the robot's pack", missing.join(", "));
-            let help = format!("where it calls them otherwise, say so: --drives {}=ITS-NAME; kinesic robot show lists its joints", missing[0]);
+            let help = format!(
+                "where it calls them otherwise, say so: --drives {}=ITS-NAME; kinesic robot show lists its joints",
+                missing[0]
+            );
             return Err(RobotError::new(format!("robot '{}'", robot.name), what, help));
         }
         // What a value of 1 of each coordinate, and what none, makes of every joint: followers are linear.
@@ -204,6 +221,10 @@ fn known(place: &str, name: &str, kind: &str, names: &[&str]) -> Result<usize, R
         let near = crate::clip::map::nearest(name, names.iter().copied());
         let near = near.map_or(String::new(), |near| format!("; did you mean '{near}'?"));
         let what = format!("'{name}' is no {kind}{near}");
-        RobotError::new(place, what, "`kinesic inspect` lists the joints of a pack, `kinesic robot show` those of a description")
+        RobotError::new(
+            place,
+            what,
+            "`kinesic inspect` lists the joints of a pack, `kinesic robot show` those of a description",
+        )
     })
 }

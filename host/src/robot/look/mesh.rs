@@ -1,6 +1,9 @@
 //! Meshes of descriptions: STL, OBJ and COLLADA files.
 
+use std::cell::Cell;
+use std::panic::{self, AssertUnwindSafe};
 use std::path::{Path, PathBuf};
+use std::sync::Once;
 
 use nalgebra::Vector3;
 
@@ -20,7 +23,9 @@ pub(super) fn read(name: &str, scale: &Vector3<f64>, folder: &Path) -> Result<Ve
     }
     // The colours of an OBJ are in another file.
     let loader = mesh_loader::Loader::with_custom_reader(files::read);
-    let scene = loader.load_from_slice(&bytes, &path).map_err(|error| match error.kind() {
+    let loaded = quietly(|| loader.load_from_slice(&bytes, &path));
+    let loaded = loaded.ok_or_else(|| format!("{shown} is damaged: it names what it does not have"))?;
+    let scene = loaded.map_err(|error| match error.kind() {
         std::io::ErrorKind::Unsupported => format!("{shown} is no STL, OBJ or COLLADA file"),
         _ => format!("{shown} is damaged: {error}"),
     })?;
@@ -39,6 +44,28 @@ pub(super) fn read(name: &str, scale: &Vector3<f64>, folder: &Path) -> Result<Ve
         solids.push(Solid { vertices, triangles, colour });
     }
     Ok(solids)
+}
+
+thread_local! {
+    static QUIET: Cell<bool> = const { Cell::new(false) };
+}
+
+/// What the reader gives; none where it panics, as it does on COLLADA files whose indices lead nowhere. Nothing is printed then.
+fn quietly<T>(read: impl FnOnce() -> T) -> Option<T> {
+    static HOOK: Once = Once::new();
+    HOOK.call_once(|| {
+        let before = panic::take_hook();
+        panic::set_hook(Box::new(move |info| {
+            if !QUIET.get() {
+                before(info);
+            }
+        }));
+    });
+    QUIET.set(true);
+    // Nothing of what was under way is used afterwards.
+    let read = panic::catch_unwind(AssertUnwindSafe(read)).ok();
+    QUIET.set(false);
+    read
 }
 
 /// Where a file is: as the name says, or, of a package, in a folder of the package's name or any other around the description.
@@ -69,7 +96,9 @@ mod tests {
         std::fs::create_dir_all(folder.path().join("desk_description/meshes")).unwrap();
         std::fs::write(folder.path().join("desk_description/meshes/arm.STL"), STL).unwrap();
         let scale = Vector3::repeat(1e-3);
-        for name in ["../meshes/arm.STL", "package://desk_description/meshes/arm.STL", "package://renamed/meshes/arm.STL"] {
+        for name in
+            ["../meshes/arm.STL", "package://desk_description/meshes/arm.STL", "package://renamed/meshes/arm.STL"]
+        {
             let solids = read(name, &scale, &deep).unwrap();
             assert_eq!(solids[0].triangles.len(), 1, "{name}");
             assert_eq!(solids[0].vertices[1], Vector3::new(1.0, 0.0, 0.0));
@@ -97,7 +126,9 @@ mod tests {
         let solids = read("a.dae", &Vector3::repeat(1.0), folder.path()).unwrap();
         let far = solids[0].vertices.iter().map(|vertex| vertex.y).fold(0.0, f64::max);
         assert!((far - 2.0).abs() < 1e-6, "centimetres: {far}");
-        for (name, text) in [("b.stl", "solid a\nfacet normal 0 0"), ("b.obj", "v 0 0 0\nf 1 2 9\n"), ("b.dae", "<COLLADA")] {
+        for (name, text) in
+            [("b.stl", "solid a\nfacet normal 0 0"), ("b.obj", "v 0 0 0\nf 1 2 9\n"), ("b.dae", "<COLLADA")]
+        {
             std::fs::write(folder.path().join(name), text).unwrap();
             let error = read(name, &Vector3::repeat(1.0), folder.path());
             assert!(error.as_ref().is_err_and(|error| error.contains("is damaged")), "{name}: {error:?}");

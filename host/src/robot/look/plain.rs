@@ -12,6 +12,11 @@ const SHORTEST: f64 = 1e-6;
 impl Look {
     /// A bone from every joint to each that it carries, a drum about every hinge, a block on every slider, and a foot.
     pub fn of_machine(machine: &Machine) -> Self {
+        Self::plain(machine).standing()
+    }
+
+    /// The same in the machine's own frame.
+    pub(super) fn plain(machine: &Machine) -> Self {
         let skeleton = &machine.rig.skeleton.joints;
         let lengths: Vec<f64> =
             skeleton.iter().map(|joint| joint.offset.norm()).filter(|length| *length > SHORTEST).collect();
@@ -51,6 +56,6 @@ impl Look {
             }
         });
         let links = links.collect();
-        Self { links, joints: (0..skeleton.len()).collect(), notes: Vec::new() }.standing()
+        Self { links, joints: (0..skeleton.len()).collect(), notes: Vec::new() }
     }
 }

@@ -48,7 +48,8 @@ impl Solid {
     /// A bone from the origin to `to`: a thin pyramid of four sides on a short one.
     pub fn bone(to: &Vector3<f64>, half_width: f64) -> Self {
         let length = to.norm();
-        let square = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]].map(|[x, y]| (half_width * x, half_width * y));
+        let square =
+            [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]].map(|[x, y]| (half_width * x, half_width * y));
         let ring = square.map(|(x, y)| nalgebra::Vector2::new(x, y)).to_vec();
         let turn = nalgebra::UnitQuaternion::rotation_between(&Vector3::z(), to)
             .unwrap_or_else(|| nalgebra::UnitQuaternion::from_axis_angle(&Vector3::x_axis(), PI));
@@ -85,7 +86,8 @@ impl Solid {
             };
             for shift in shifts {
                 let lift = Vector3::z() * (radius * up.sin() + shift * length);
-                vertices.extend(ring(radius * up.cos()).iter().map(|corner| Vector3::new(corner.x, corner.y, 0.0) + lift));
+                vertices
+                    .extend(ring(radius * up.cos()).iter().map(|corner| Vector3::new(corner.x, corner.y, 0.0) + lift));
             }
         }
         let rows = (vertices.len() - 1) / SIDES;

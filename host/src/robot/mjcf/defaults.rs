@@ -66,7 +66,11 @@ impl Defaults {
         let class = source.get(element, "class").or(around).unwrap_or(MAIN);
         let known = self.classes.get(class).ok_or_else(|| {
             let what = format!("its class '{class}' is not in the file, which has {} classes", self.classes.len());
-            RobotError::new(source.place(element), what, format!("add <default class=\"{class}\"/>, or correct the name"))
+            RobotError::new(
+                source.place(element),
+                what,
+                format!("add <default class=\"{class}\"/>, or correct the name"),
+            )
         })?;
         let at = self.attributes.iter().position(|known| *known == attribute);
         Ok(at.and_then(|at| known[at]))

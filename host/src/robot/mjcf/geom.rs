@@ -92,7 +92,8 @@ impl Geoms {
             ("plane" | "hfield" | "sdf", _) => return Ok(None),
             ("mesh", _) => {
                 let name = mesh.unwrap_or_default();
-                let known = self.meshes.get(name).ok_or_else(|| refuse(format!("its mesh '{name}' is not in <asset>")))?;
+                let known =
+                    self.meshes.get(name).ok_or_else(|| refuse(format!("its mesh '{name}' is not in <asset>")))?;
                 Some(Form::Mesh(known.0.clone(), known.1))
             }
             ("sphere", Some(radius)) => Some(Form::Ellipsoid(Vector3::repeat(*radius))),

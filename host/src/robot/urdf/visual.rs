@@ -69,9 +69,7 @@ fn form(geometry: Node) -> Result<Form, String> {
 fn length(node: Node, name: &str) -> Result<f64, String> {
     let text = node.attribute(name).unwrap_or_default();
     let length = text.trim().parse().ok().filter(|x| (0.0..1e6).contains(x) && *x > 0.0);
-    length.ok_or_else(|| {
-        format!("<{} {name}=\"{text}\">: expected a length over 0, as 0.05", node.tag_name().name())
-    })
+    length.ok_or_else(|| format!("<{} {name}=\"{text}\">: expected a length over 0, as 0.05", node.tag_name().name()))
 }
 
 fn three(node: Node, name: &str) -> Result<Option<Vector3<f64>>, String> {
