@@ -17,7 +17,6 @@ use kinesic_host::gait::{Manner, walk};
 use kinesic_host::models;
 use kinesic_host::pack::PackFile;
 use kinesic_host::prepare::Source;
-use kinesic_host::robot::Machine;
 use kinesic_host::view::{self, View, ViewClip, ViewFace, ViewPack};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
@@ -144,33 +143,6 @@ fn same_bits(state: &Value) {
         assert_eq!(each["frames"], 300);
         assert_eq!(each["here"], each["host"], "{each}");
     }
-}
-
-#[test]
-#[ignore = "needs chromium: firmware-sim/setup.sh"]
-fn a_robot_s_style_has_the_bits_of_the_host() {
-    let folder = tempfile::tempdir().unwrap();
-    let file =
-        PackFile::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/board/examples/desk/lively.kin")).unwrap();
-    let machine = Machine::from_pack(&file.pack().unwrap()).unwrap().unwrap();
-    let rows = (0..200)
-        .map(|at| format!("{},{},{},9,-9\n", f64::from(at) / 50.0, at % 60 - 30, (at / 7) % 20))
-        .collect::<String>();
-    let moves = folder.path().join("m.csv");
-    std::fs::write(&moves, format!("time_s,pan_deg,tilt_deg,left_antenna_deg,right_antenna_deg\n{rows}")).unwrap();
-    let options = ReadOptions { machine: Some(Arc::new(machine)), ..ReadOptions::default() };
-    let source = Source::read(&moves, &options).unwrap();
-    let packs = vec![ViewPack { name: "lively".to_owned(), file, look: None }];
-    let clips = vec![ViewClip { name: "a move".to_owned(), source, target: None }];
-    let shown = View { packs, clips, ..View::default() };
-    let html = view::page("kinesic", "made by a test", &shown, view::WASM).unwrap();
-    let path = folder.path().join("page.html");
-    std::fs::write(&path, html).unwrap();
-    let mut browser = Browser::open(&path, [800, 600], false).unwrap();
-    browser.wait("typeof kinesic === 'object' && kinesic.compared").unwrap();
-    let bits = state(&mut browser)["bits"].clone();
-    assert_eq!((bits.as_array().unwrap().len(), bits[0]["frames"].as_u64()), (1, Some(200)));
-    assert_eq!(bits[0]["here"], bits[0]["host"], "{bits}");
 }
 
 #[test]

@@ -195,10 +195,9 @@ fn meshes_are_drawn_with_few_triangles_and_those_that_are_not_there_are_said() {
 fn damaged_meshes_are_refused_without_a_panic() {
     let (_, machine) = crane();
     let folder = tempfile::tempdir().unwrap();
-    let cube =
-        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\nvt 0 0\nusemtl a\nf 1/1/1 2/1/1 3/1/1 4/1/1\n"
-            .as_bytes()
-            .to_vec();
+    let cube = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\nvt 0 0\nusemtl a\nf 1/1/1 2/1/1 3/1/1 4/1/1\n"
+        .as_bytes()
+        .to_vec();
     let dae = br##"<COLLADA version="1.4.1"><asset><unit meter="1"/></asset><library_geometries><geometry id="g"><mesh><source id="p">
         <float_array id="pa" count="9">0 0 0 1 0 0 0 2 0</float_array><technique_common><accessor source="#pa" count="3" stride="3"><param name="X" type="float"/>
         <param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source><vertices id="v"><input semantic="POSITION" source="#p"/>

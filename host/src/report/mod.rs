@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `page` | title, paragraphs, tables, charts, figures, as HTML |
 //! | `chart` | curves as SVG |
-//! | `stick_figures` | stick figures of clips as SVG |
+//! | `stick_figures` | figures of lines, of people and robots, as SVG |
 //! | `faces` | faces from their landmarks as SVG |
 //! | [`latency`] | what a frame costs on six cores |
 
@@ -17,4 +17,4 @@ mod stick_figures;
 pub use chart::{Chart, Line};
 pub use faces::faces;
 pub use page::{Report, Table};
-pub use stick_figures::stick_figures;
+pub use stick_figures::{robot_figures, stick_figures};

@@ -43,6 +43,8 @@ struct SolidData {
     /// u16, three a triangle.
     triangles: String,
     colour: Option<[f64; 3]>,
+    /// Its triangles are turned outside, and those seen from behind are hidden.
+    closed: bool,
 }
 
 impl MachineData {
@@ -96,5 +98,6 @@ fn solid(solid: &Solid) -> SolidData {
         vertices: BASE64_STANDARD.encode(bytemuck::cast_slice(&vertices)),
         triangles: BASE64_STANDARD.encode(bytemuck::cast_slice(&triangles)),
         colour: solid.colour,
+        closed: solid.is_closed(),
     }
 }

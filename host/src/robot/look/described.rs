@@ -11,7 +11,7 @@ use crate::robot::shape::Form;
 use crate::robot::{Machine, Motion, POSE, Robot, RobotError};
 
 /// Triangles of a robot at most: a page draws several robots, sixty times a second, without a graphics processor.
-pub const TRIANGLES: usize = 4000;
+pub const TRIANGLES: usize = 3000;
 
 /// What a machine moves in a description that calls it otherwise.
 #[derive(Clone, Debug, PartialEq)]
@@ -86,6 +86,7 @@ impl Look {
                 axis: joint.axis,
                 drive: None,
                 solids: Vec::new(),
+                tip: None,
             });
         }
         look.drive(machine, robot, &place, |joint| poses.iter().any(|(pose, _)| *pose == joint), &renamed)?;

@@ -44,6 +44,8 @@ pub struct Link {
     pub drive: Option<Drive>,
     /// In its frame.
     pub solids: Vec<Solid>,
+    /// Its end, in its frame, where nothing hangs on it and it is known.
+    pub tip: Option<Vector3<f64>>,
 }
 
 /// How a link moves against the one that carries it.
@@ -85,6 +87,16 @@ impl Look {
             frames.push(link.parent.map_or(own, |parent| frames[parent] * own));
         }
         frames
+    }
+
+    /// Lines from every link to each that hangs on it, and to the tips of the last ones, m, in the world.
+    pub fn sticks(&self, coordinates: &[f64]) -> Vec<(Vector3<f64>, Vector3<f64>)> {
+        let frames = self.placed(coordinates);
+        let place = |link: usize| frames[link].translation.vector;
+        let links = self.links.iter().enumerate();
+        let bones = links.clone().filter_map(|(at, link)| Some((place(link.parent?), place(at))));
+        let tips = links.filter_map(|(at, link)| Some((place(at), (frames[at] * Point3::from(link.tip?)).coords)));
+        bones.chain(tips).collect()
     }
 
     /// Least and greatest corner over all solids, m, at these coordinates.

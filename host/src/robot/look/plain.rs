@@ -53,6 +53,7 @@ impl Look {
                 axis,
                 drive: (way != Way::Fixed).then_some(Drive { coordinate: first, multiplier: 1.0, offset: 0.0 }),
                 solids,
+                tip: joint.end,
             }
         });
         let links = links.collect();

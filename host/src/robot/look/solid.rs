@@ -1,6 +1,6 @@
 //! Triangles: of boxes, ellipsoids, cylinders and capsules, and fewer of them.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::f64::consts::{PI, TAU};
 
 use nalgebra::{Isometry3, Vector3};
@@ -131,7 +131,7 @@ impl Solid {
             of.push(at);
         }
         let merged = self.triangles.iter().map(|triangle| triangle.map(|vertex| of[vertex]));
-        let mut known = std::collections::HashSet::new();
+        let mut known = HashSet::new();
         let triangles: Vec<[usize; 3]> = merged
             .filter(|[a, b, c]| a != b && b != c && c != a)
             .filter(|triangle| {
@@ -142,6 +142,32 @@ impl Solid {
             .collect();
         Self { vertices: sums.into_iter().map(|(sum, count)| sum / count).collect(), triangles, colour: self.colour }
             .used()
+    }
+
+    /// Whether it has an inside: nearly every edge is there in both directions. Triangles of such a solid that are seen from behind are
+    /// hidden by others.
+    pub fn is_closed(&self) -> bool {
+        let edges = || self.triangles.iter().flat_map(|[a, b, c]| [[*a, *b], [*b, *c], [*c, *a]]);
+        let all: HashSet<[usize; 2]> = edges().collect();
+        let open = all.iter().filter(|[a, b]| !all.contains(&[*b, *a])).count();
+        all.len() >= 12 && open * 50 <= all.len()
+    }
+
+    /// Signed volume, m^3: below 0 for a closed solid whose triangles are turned inside.
+    pub fn volume(&self) -> f64 {
+        let of = |triangle: &[usize; 3]| {
+            let [a, b, c] = triangle.map(|at| self.vertices[at]);
+            a.dot(&b.cross(&c)) / 6.0
+        };
+        self.triangles.iter().map(of).sum()
+    }
+
+    /// With the triangles of a closed solid turned outside.
+    fn outward(mut self) -> Self {
+        if self.volume() < 0.0 {
+            self.triangles.iter_mut().for_each(|[_, b, c]| std::mem::swap(b, c));
+        }
+        self
     }
 
     /// Without vertices that no triangle has.
@@ -171,7 +197,7 @@ pub(super) fn thinned(mut solids: Vec<Solid>, most: usize) -> Vec<Solid> {
         solids = solids.iter().map(|solid| solid.coarser(cell)).collect();
         cell *= 1.2;
     }
-    solids
+    solids.into_iter().map(Solid::outward).collect()
 }
 
 fn ring(radius: f64) -> Vec<nalgebra::Vector2<f64>> {
@@ -186,19 +212,10 @@ fn ring(radius: f64) -> Vec<nalgebra::Vector2<f64>> {
 mod tests {
     use super::*;
 
-    /// Signed volume, m^3: over 0 for a closed solid that is seen in counter-clockwise order from outside.
-    fn volume(solid: &Solid) -> f64 {
-        let of = |[a, b, c]: &[usize; 3]| {
-            let [a, b, c] = [a, b, c].map(|at| solid.vertices[*at]);
-            a.dot(&b.cross(&c)) / 6.0
-        };
-        solid.triangles.iter().map(of).sum()
-    }
-
     /// Every edge is there once in each direction.
     fn closed(solid: &Solid) -> bool {
         let edges = solid.triangles.iter().flat_map(|[a, b, c]| [[*a, *b], [*b, *c], [*c, *a]]);
-        let all: std::collections::HashSet<[usize; 2]> = edges.collect();
+        let all: HashSet<[usize; 2]> = edges.collect();
         all.len() == 3 * solid.triangles.len() && all.iter().all(|[a, b]| all.contains(&[*b, *a]))
     }
 
@@ -214,7 +231,8 @@ mod tests {
         ];
         for (at, (solid, expected, off)) in solids.into_iter().enumerate() {
             assert!(closed(&solid), "{at}");
-            let found = volume(&solid);
+            assert!(solid.is_closed(), "{at}");
+            let found = solid.volume();
             assert!((found / expected - 1.0).abs() <= off, "{at}: {found} {expected}");
         }
     }
@@ -224,7 +242,7 @@ mod tests {
         let ball = Solid::ellipsoid(&Vector3::repeat(0.1));
         let fewer = thinned(vec![ball.clone()], 60);
         assert!(fewer[0].triangles.len() <= 60 && !fewer[0].triangles.is_empty());
-        assert!((volume(&fewer[0]) / volume(&ball) - 1.0).abs() < 0.35, "{}", volume(&fewer[0]));
+        assert!((fewer[0].volume() / ball.volume() - 1.0).abs() < 0.35, "{}", fewer[0].volume());
         // Separate triangles, as an STL has them, are joined where they meet.
         let apart = Solid {
             vertices: ball.triangles.iter().flatten().map(|at| ball.vertices[*at]).collect(),
@@ -233,5 +251,9 @@ mod tests {
         };
         let joined = apart.coarser(1e-6);
         assert!(closed(&joined) && joined.triangles.len() == ball.triangles.len());
+        assert!(!apart.is_closed(), "triangles alone");
+        // Mirrored ones are turned outside.
+        let mirrored = Solid { vertices: ball.vertices.iter().map(|v| Vector3::new(-v.x, v.y, v.z)).collect(), ..ball };
+        assert!(mirrored.volume() < 0.0 && thinned(vec![mirrored], 1000)[0].volume() > 0.0);
     }
 }

@@ -18,7 +18,7 @@ pub(super) fn read(root: Node, line: &dyn Fn(Node) -> u32) -> (Vec<Shape>, Vec<S
         let name = link.attribute("name").unwrap_or_default();
         for visual in link.children().filter(|node| node.has_tag_name("visual")) {
             match shape(visual, &colours) {
-                Ok((at, form, colour)) => shapes.push(Shape { link: name.to_owned(), at, form, colour }),
+                Ok(shape) => shapes.push(Shape { link: name.to_owned(), ..shape }),
                 Err(what) => notes.push(format!("line {}: {what}: this part of '{name}' is not drawn", line(visual))),
             }
         }
@@ -26,7 +26,8 @@ pub(super) fn read(root: Node, line: &dyn Fn(Node) -> u32) -> (Vec<Shape>, Vec<S
     (shapes, notes)
 }
 
-fn shape(visual: Node, colours: &Colours) -> Result<(Isometry3<f64>, Form, Option<[f64; 3]>), String> {
+/// The shape of a link yet without name.
+fn shape(visual: Node, colours: &Colours) -> Result<Shape, String> {
     let at = match child(visual, "origin") {
         None => Isometry3::identity(),
         Some(origin) => {
@@ -42,7 +43,7 @@ fn shape(visual: Node, colours: &Colours) -> Result<(Isometry3<f64>, Form, Optio
         let name = material.attribute("name").unwrap_or_default();
         own(material).or_else(|| colours.get(name).copied())
     });
-    Ok((at, form(geometry)?, colour))
+    Ok(Shape { link: String::new(), at, form: form(geometry)?, colour })
 }
 
 fn form(geometry: Node) -> Result<Form, String> {

@@ -28,7 +28,7 @@ class Scene {
   reset() {
     const [width, height] = fit(this.canvas);
     const row = this.slot * (this.count - 1);
-    const across = (focal(width, height) / width) * (row + 1.1 * this.size) + 0.5 * row * Math.sin(UPRIGHT.yaw);
+    const across = (focal(width, height) / width) * (row + 0.85 * this.slot) + 0.5 * row * Math.sin(UPRIGHT.yaw);
     this.camera = { ...UPRIGHT, distance: Math.max(across, (focal(width, height) / height) * 3.25 * this.size) };
     this.moved = false;
   }

@@ -3,12 +3,13 @@
 // From where light falls, length one.
 const LIGHT = [0.3, 0.8, 0.52];
 const SHADES = 24;
+const GROWN = 0.7; // pixels
 
 class Solid {
-  constructor({ vertices, triangles, colour }) {
+  constructor({ vertices, triangles, colour, closed }) {
     this.vertices = floats(vertices);
     this.triangles = new Uint16Array(bytes(triangles).buffer);
-    this.colour = colour;
+    Object.assign(this, { colour, closed });
     const count = this.vertices.length / 3;
     [this.world, this.screen] = [new Float32Array(3 * count), new Float32Array(3 * count)];
   }
@@ -49,28 +50,29 @@ class Painter {
     }
     for (let k = 0; k < triangles.length; k += 3) {
       const [a, b, c] = [3 * triangles[k], 3 * triangles[k + 1], 3 * triangles[k + 2]];
-      const depth = screen[a + 2] + screen[b + 2] + screen[c + 2];
       // One corner behind the eye: none of it is drawn.
       if (!(screen[a + 2] > 0.05 * eye && screen[b + 2] > 0.05 * eye && screen[c + 2] > 0.05 * eye)) continue;
+      const across = (screen[b] - screen[a]) * (screen[c + 1] - screen[a + 1]) - (screen[c] - screen[a]) * (screen[b + 1] - screen[a + 1]);
+      if (solid.closed && across >= 0) continue;
       const [ux, uy, uz] = [world[b] - world[a], world[b + 1] - world[a + 1], world[b + 2] - world[a + 2]];
       const [vx, vy, vz] = [world[c] - world[a], world[c + 1] - world[a + 1], world[c + 2] - world[a + 2]];
       const [nx, ny, nz] = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
       const long = Math.hypot(nx, ny, nz);
       if (!long) continue;
-      // Meshes turn their triangles either way: both sides are lit, the one that is seen.
-      const across = (screen[b] - screen[a]) * (screen[c + 1] - screen[a + 1]) - (screen[c] - screen[a]) * (screen[b + 1] - screen[a + 1]);
+      // An open mesh turns its triangles either way: the side that is seen is lit.
       const light = ((across < 0 ? 1 : -1) * (nx * LIGHT[0] + ny * LIGHT[1] + nz * LIGHT[2])) / long;
       if (this.count === this.depths.length) this.grow(2 * this.count);
       const at = this.count++;
-      this.depths[at] = depth;
+      this.depths[at] = screen[a + 2] + screen[b + 2] + screen[c + 2];
       this.styles[at] = shades + Math.round((SHADES - 1) * (0.5 + 0.5 * light));
-      const corners = 6 * at;
-      this.corners[corners] = screen[a];
-      this.corners[corners + 1] = screen[a + 1];
-      this.corners[corners + 2] = screen[b];
-      this.corners[corners + 3] = screen[b + 1];
-      this.corners[corners + 4] = screen[c];
-      this.corners[corners + 5] = screen[c + 1];
+      // A little larger than it is, so that no gap shows between neighbours.
+      const [midX, midY] = [(screen[a] + screen[b] + screen[c]) / 3, (screen[a + 1] + screen[b + 1] + screen[c + 1]) / 3];
+      [a, b, c].forEach((corner, k) => {
+        const [dx, dy] = [screen[corner] - midX, screen[corner + 1] - midY];
+        const grown = 1 + GROWN / Math.max(1, Math.hypot(dx, dy));
+        this.corners[6 * at + 2 * k] = midX + grown * dx;
+        this.corners[6 * at + 2 * k + 1] = midY + grown * dy;
+      });
     }
   }
 
@@ -88,28 +90,19 @@ class Painter {
   paint() {
     const { context, count, depths, corners, styles, palette } = this;
     const order = Uint32Array.from({ length: count }, (_, at) => at).sort((a, b) => depths[b] - depths[a]);
-    context.lineWidth = 1;
-    context.lineJoin = "round";
     let open = -1;
-    const close = () => {
-      if (open < 0) return;
-      // A thin line of its own colour closes the gaps between neighbours.
-      context.fill();
-      context.stroke();
-    };
     for (const at of order) {
       if (styles[at] !== open) {
-        close();
+        if (open >= 0) context.fill();
         open = styles[at];
-        context.fillStyle = context.strokeStyle = palette[open];
+        context.fillStyle = palette[open];
         context.beginPath();
       }
       const k = 6 * at;
       context.moveTo(corners[k], corners[k + 1]);
       context.lineTo(corners[k + 2], corners[k + 3]);
       context.lineTo(corners[k + 4], corners[k + 5]);
-      context.closePath();
     }
-    close();
+    if (open >= 0) context.fill();
   }
 }

@@ -3,7 +3,7 @@
 use kinesic_host::clip::Clip;
 use kinesic_host::components::{Report, Settings, ToClip, TradeOff, Trained, play_stored};
 use kinesic_host::pack::PackFile;
-use kinesic_host::report::{Chart, Line, Report as Page, Table, stick_figures};
+use kinesic_host::report::{Chart, Line, Report as Page, Table};
 use kinesic_host::rig::Rig;
 use miette::IntoDiagnostic;
 
@@ -24,12 +24,11 @@ pub fn page(
         "Two clips became sparse basic motions; new ones were learned that stay near the content's and share the style's \
          Gram matrix (Phong, Thanh, Yu 2018).",
     );
-    let result = play_stored(&file.pack().into_diagnostic()?, rig, &Settings::default()).into_diagnostic()?;
+    let pack = file.pack().into_diagnostic()?;
+    let result = play_stored(&pack, rig, &Settings::default()).into_diagnostic()?;
     page.heading("What it does");
-    page.figure(
-        &stick_figures(&[("content", content), ("style", style), ("result", &result)]),
-        "Eight moments from the first to the last frame of each clip; left limbs blue, right ones orange.",
-    );
+    let rows = [("content", content), ("style", style), ("result", &result)];
+    super::figures(&mut page, &pack, &rows, "Eight moments from the first to the last frame of each clip.")?;
     page.text(&format!("{}.", trained.choice.reason));
     let row = |name: &str, value: String| vec![name.to_owned(), value];
     page.table(&Table {

@@ -5,7 +5,7 @@ use kinesic_host::emotion::evaluate::{Report, Scorer, mean};
 use kinesic_host::emotion::motions::Example;
 use kinesic_host::emotion::play::{Settings, Strengths, play, seconds};
 use kinesic_host::emotion::{Distances, HostEmotion, Trained};
-use kinesic_host::report::{Chart, Line, Report as Page, Table, stick_figures};
+use kinesic_host::report::{Chart, Line, Report as Page, Table};
 use miette::IntoDiagnostic;
 
 use crate::commands::angles;
@@ -132,11 +132,9 @@ fn drawn(page: &mut Page, trained: &Trained, pack: &Pack) -> miette::Result<()> 
             shown.push((format!("{}, {name}: {strength:.2}", attribute.name), played.clip));
         }
         let rows: Vec<_> = shown.iter().map(|(name, clip)| (name.as_str(), clip)).collect();
-        page.figure(
-            &stick_figures(&rows),
-            "Eight moments of the motion as the device plays it; other attributes in the middle of their range. Strength is in units of \
-             the labels; the range is that of 98 % of the training motions. Left limbs blue, right ones orange.",
-        );
+        let what = "Eight moments of the motion as the device plays it; other attributes in the middle of their range. Strength is in units of \
+             the labels; the range is that of 98 % of the training motions.";
+        super::figures(page, pack, &rows, what)?;
     }
     Ok(())
 }

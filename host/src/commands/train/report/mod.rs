@@ -8,8 +8,12 @@ pub mod translate;
 
 use std::path::{Path, PathBuf};
 
+use kinesic::Pack;
+use kinesic_host::clip::Clip;
 use kinesic_host::pack::PackFile;
-use kinesic_host::report::{Report, Table, latency};
+use kinesic_host::report::{Report, Table, latency, robot_figures, stick_figures};
+use kinesic_host::robot::Machine;
+use kinesic_host::robot::look::Look;
 use miette::{IntoDiagnostic, miette};
 use serde_json::Value;
 
@@ -25,6 +29,15 @@ pub struct ReportArgs {
     /// Write no report
     #[arg(long)]
     no_report: bool,
+}
+
+/// Adds clips of a pack's body or robot as rows of figures. `what` says of which moments.
+fn figures(page: &mut Report, pack: &Pack, rows: &[(&str, &Clip)], what: &str) -> miette::Result<()> {
+    match Machine::from_pack(pack).into_diagnostic()? {
+        Some(machine) => page.figure(&robot_figures(&Look::of_machine(&machine), rows), what),
+        None => page.figure(&stick_figures(rows), &format!("{what} Left limbs blue, right ones orange.")),
+    };
+    Ok(())
 }
 
 impl ReportArgs {

@@ -1,9 +1,13 @@
 //! The report of `kinesic train translate`.
 
+use kinesic::Pack;
+use kinesic::rig::JointKind;
 use kinesic_host::clip::Clip;
 use kinesic_host::pack::PackFile;
-use kinesic_host::report::{Chart, Line, Report as Page, Table, stick_figures};
+use kinesic_host::plain;
+use kinesic_host::report::{Chart, Line, Report as Page, Table};
 use kinesic_host::rig::Rig;
+use kinesic_host::robot::Machine;
 use kinesic_host::translate::{Errors, NamedPair, Report, Settings, Trained, play};
 use miette::IntoDiagnostic;
 
@@ -17,12 +21,12 @@ pub fn page(trained: &Trained, report: &Report, first: &NamedPair, rig: &Rig, fi
         "State-space models that turn one manner of moving into another (Dong 2018 after Hsu 2005).",
     );
     let ((_, source), (_, target)) = (first.source, first.target);
-    let styled = play(&file.pack().into_diagnostic()?, rig, source, &Settings::default()).into_diagnostic()?;
-    page.heading("What it does").figure(
-        &stick_figures(&[("source", source), ("translated", &styled), ("target", target)]),
-        "Eight moments from the first to the last frame of each clip of the first training pair; left limbs blue, right ones \
-         orange. Clips of different length do not line up.",
-    );
+    let pack = file.pack().into_diagnostic()?;
+    let styled = play(&pack, rig, source, &Settings::default()).into_diagnostic()?;
+    page.heading("What it does");
+    let clips = [("source", source), ("translated", &styled), ("target", target)];
+    let what = "Eight moments from the first to the last frame of each clip of the first training pair. Clips of different length do not line up.";
+    super::figures(&mut page, &pack, &clips, what)?;
     let row = |name: &str, e: &Errors| {
         let cells = [
             e.identity_cm,
@@ -48,17 +52,12 @@ pub fn page(trained: &Trained, report: &Report, first: &NamedPair, rig: &Rig, fi
         rows,
     });
     page.table(&angles::table(&angles::columns(&report.errors), "Angle to the target, mean of the training pairs"));
-    let (joint, name) = most_changed(rig, source, target);
-    let height = |clip: &Clip| (0..clip.frames()).map(|frame| clip.positions(frame)[joint].y).collect::<Vec<f64>>();
+    let curve = Curve::most_changed(&pack, rig, [source, target])?;
     page.chart(&Chart {
-        caption: format!("Height of {name} over the ground, m: the joint whose mean height the style changes most, in the first pair."),
+        caption: curve.caption,
         x: "frame",
-        y: "height, m",
-        lines: vec![
-            Line::of("source", &height(source)),
-            Line::of("translated", &height(&styled)),
-            Line::of("target", &height(target)),
-        ],
+        y: curve.unit,
+        lines: clips.iter().map(|(name, clip)| Line::of(name, &(curve.value)(clip))).collect(),
     });
     page.heading("How it was chosen").table(&Table {
         caption:
@@ -82,12 +81,50 @@ pub fn page(trained: &Trained, report: &Report, first: &NamedPair, rig: &Rig, fi
     Ok(page)
 }
 
-/// The joint whose mean height differs most between two clips, and its name.
-fn most_changed(rig: &Rig, source: &Clip, target: &Clip) -> (usize, String) {
-    let mean = |clip: &Clip, joint: usize| {
-        (0..clip.frames()).map(|frame| clip.positions(frame)[joint].y).sum::<f64>() / clip.frames().max(1) as f64
-    };
-    let change = |joint: &usize| (mean(source, *joint) - mean(target, *joint)).abs();
-    let joint = (0..rig.joints()).max_by(|a, b| change(a).total_cmp(&change(b))).unwrap_or(0);
-    (joint, rig.skeleton.joints[joint].name.clone())
+/// What is plotted of every clip.
+struct Curve {
+    caption: String,
+    unit: &'static str,
+    value: Box<dyn Fn(&Clip) -> Vec<f64>>,
+}
+
+impl Curve {
+    /// Of a body the height of the joint whose mean height differs most between two clips; of a robot the coordinate that goes farther.
+    fn most_changed(pack: &Pack, rig: &Rig, [source, target]: [&Clip; 2]) -> miette::Result<Self> {
+        let most = |count: usize, change: &dyn Fn(usize) -> f64| {
+            (0..count).max_by(|a, b| change(*a).total_cmp(&change(*b))).unwrap_or(0)
+        };
+        let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len().max(1) as f64;
+        if let Some(machine) = Machine::from_pack(pack).into_diagnostic()? {
+            let of = |clip: &Clip, at: usize, scale: f64| -> Vec<f64> {
+                (0..clip.frames()).filter_map(|frame| Some(scale * clip.coordinates(frame)?.get(at)?)).collect()
+            };
+            let swing = |clip: &Clip, at: usize| {
+                let values = of(clip, at, 1.0);
+                let middle = mean(&values);
+                values.iter().map(|x| (x - middle).abs()).sum::<f64>() / values.len().max(1) as f64
+            };
+            let coordinate = most(machine.servos.len(), &|at| (swing(source, at) - swing(target, at)).abs());
+            let slides = machine.rig.frames().places().any(|(kind, at)| kind == JointKind::Slider && at == coordinate);
+            let (unit, scale) = if slides { ("mm", 1000.0) } else { ("degrees", 180.0 / std::f64::consts::PI) };
+            let name = plain::line(&machine.servos[coordinate].name);
+            return Ok(Self {
+                caption: format!("Joint {name}, {unit}: its swing changes most, in the first pair."),
+                unit,
+                value: Box::new(move |clip| of(clip, coordinate, scale)),
+            });
+        }
+        let height = |clip: &Clip, joint: usize| -> Vec<f64> {
+            (0..clip.frames()).map(|frame| clip.positions(frame)[joint].y).collect()
+        };
+        let joint = most(rig.joints(), &|joint| (mean(&height(source, joint)) - mean(&height(target, joint))).abs());
+        let name = &rig.skeleton.joints[joint].name;
+        Ok(Self {
+            caption: format!(
+                "Height of {name} over the ground, m: the joint whose mean height the style changes most, in the first pair."
+            ),
+            unit: "height, m",
+            value: Box::new(move |clip| height(clip, joint)),
+        })
+    }
 }
