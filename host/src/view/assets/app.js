@@ -57,7 +57,7 @@ function show() {
   }
   const rooms = figures.map(({ track }) => room(track.source ?? track));
   const most = (of) => Math.max(...rooms.map((each) => each[of]));
-  kinesic.scene.stand(figures.length, { height: most("height"), reach: most("reach") });
+  kinesic.scene.stand(figures.length, { height: most("height"), reach: most("reach"), front: most("front") });
   const placed = figures.map((figure, k) => {
     const [x, , z] = (figure.track.source ?? figure.track).place(0);
     return { ...figure, index: k, shift: [(k - (figures.length - 1) / 2) * kinesic.scene.slot - x, -z] };

@@ -32,10 +32,10 @@ class Machine {
     return Float32Array.from({ length: 3 * this.joints.length }, (_, k) => frames[7 * this.joints[Math.floor(k / 3)].link + (k % 3)]);
   }
 
-  // How high a track reaches, and how far to the sides, m; what is before and behind is seen shortened.
+  // How high a track reaches, how far to the sides, and how far towards who looks, m. What is before and behind is seen shortened.
   extent(track) {
     const v = [0, 0, 0];
-    let [height, reach] = [0.01, 0.01];
+    let [height, reach, front] = [0.01, 0.01, 0];
     for (let frame = 0; frame < track.frames; frame += Math.ceil(track.frames / 16)) {
       const frames = this.place(track.pose(frame));
       this.links.forEach(({ solids }, link) => {
@@ -46,11 +46,12 @@ class Machine {
             const [x, y, z] = turned(turn, v);
             height = Math.max(height, place[1] + y);
             reach = Math.max(reach, 1.1 * Math.abs(place[0] + x), 0.6 * Math.abs(place[2] + z));
+            front = Math.max(front, place[2] + z);
           }
         }
       });
     }
-    return { height, reach };
+    return { height, reach, front };
   }
 
   // What a coordinate of a joint is shown in: degrees, or mm.

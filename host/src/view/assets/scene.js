@@ -3,7 +3,7 @@
 const UPRIGHT = { yaw: 0.35, pitch: 0.2 };
 
 // Room that a track needs, m: a person's, or what a robot reaches in it.
-const room = (track) => track.pack.machine?.extent(track) ?? { height: 1.75, reach: 0.65 };
+const room = (track) => track.pack.machine?.extent(track) ?? { height: 1.75, reach: 0.65, front: 0 };
 
 class Scene {
   constructor(canvas) {
@@ -11,15 +11,15 @@ class Scene {
     this.context = canvas.getContext("2d");
     this.painter = new Painter(this.context);
     this.target = [0, 0.9, 0];
-    Object.assign(this, { count: 1, slot: 1.3, size: 1 });
+    Object.assign(this, { count: 1, front: 0, slot: 1.3, size: 1 });
     this.reset();
     this.listen();
   }
 
   // As many figures stand there, each with so much room: all of them are to be seen, unless the person has chosen a view.
-  stand(count, { height, reach }) {
+  stand(count, { height, reach, front }) {
     // `slot`: metres between figures; `size`: against a person.
-    Object.assign(this, { count, slot: 2 * reach, size: Math.max(height / 1.75, 0.85 * reach) });
+    Object.assign(this, { count, front, slot: 2 * reach, size: Math.max((height + 0.4 * front) / 1.75, 0.85 * reach) });
     this.target[1] = 0.5 * height + 0.025 * this.size;
     if (!this.moved) this.reset();
   }
@@ -29,7 +29,7 @@ class Scene {
     const [width, height] = fit(this.canvas);
     const row = this.slot * (this.count - 1);
     const across = (focal(width, height) / width) * (row + 0.85 * this.slot) + 0.5 * row * Math.sin(UPRIGHT.yaw);
-    this.camera = { ...UPRIGHT, distance: Math.max(across, (focal(width, height) / height) * 3.25 * this.size) };
+    this.camera = { ...UPRIGHT, distance: this.front + Math.max(across, (focal(width, height) / height) * 3.25 * this.size) };
     this.moved = false;
   }
 
