@@ -23,7 +23,8 @@ pub enum PrepareError {
     /// Names that no known layout has.
     #[error(
         "{}: the joint names are of no known skeleton: {joints}. Give a skeleton map (--map FILE) that names pelvis, head \
-         and limbs; `kinesic inspect --help` shows one",
+         and limbs; `kinesic inspect --suggest-map '{}' > map.toml` makes one to look at",
+        path.display(),
         path.display()
     )]
     UnknownSkeleton {

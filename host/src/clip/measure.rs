@@ -52,7 +52,8 @@ pub(super) fn note_names(clip: &mut Clip, map: Option<&JointMap>, options: &Read
             clip.notes.push(format!("Joints: names of no exact layout, read as {} by their parts.", map.layout()));
         }
         (None, _) => clip.notes.push(
-            "Joints: names of no known layout, so that neither the up axis nor left and right could be checked; --map names them."
+            "Joints: names of no known layout, so that neither the up axis nor left and right could be checked; --map names \
+             them, and `kinesic inspect --suggest-map` makes a map to look at."
                 .into(),
         ),
         _ => {}

@@ -18,6 +18,7 @@ use serde::Serialize;
 use super::clips::Reading;
 use super::output::print_json;
 use super::robot::table;
+use super::suggest;
 
 /// Say what a clip or a pack holds, and what is wrong with it
 #[derive(Debug, clap::Args)]
@@ -25,6 +26,7 @@ use super::robot::table;
 Examples:
   kinesic inspect walk.bvh
   kinesic inspect angry.kin --json
+  kinesic inspect mine.bvh --suggest-map > my-skeleton.toml       # look at it, then
   kinesic inspect mine.bvh --map my-skeleton.toml
   kinesic inspect nod.csv --robot desk.kin
 
@@ -42,12 +44,18 @@ pub struct Args {
     /// Print one JSON object
     #[arg(long)]
     json: bool,
+    /// Print a skeleton map made from hierarchy, lengths of bones and motion, for joint names that are not known
+    #[arg(long, conflicts_with_all = ["map", "strict"])]
+    suggest_map: bool,
     #[command(flatten)]
     reading: Reading,
 }
 
 /// Runs the command.
 pub fn run(args: &Args) -> miette::Result<()> {
+    if args.suggest_map {
+        return suggest::run(&args.file, args.json, &args.reading);
+    }
     if is_pack(&args.file) {
         return pack(&args.file, args.json);
     }
@@ -147,7 +155,8 @@ fn clip(args: &Args, options: &clip::ReadOptions, clip: &Clip) -> miette::Result
     }
     let s = &report.summary;
     println!("{}: {} frames at {:.4} a second, {:.2} s", report.file, s.frames, s.fps, s.duration_s);
-    let layout = map.as_ref().map_or("unknown names: give a skeleton map with --map (see --help)", JointMap::layout);
+    let layout =
+        map.as_ref().map_or("unknown names: --suggest-map makes a skeleton map, --map takes it", JointMap::layout);
     println!("skeleton   {} joints, {layout}, about {:.2} m from pelvis chain and legs", s.joints, s.height_m);
     println!("height     joints between {:.2} m and {:.2} m", s.vertical_m[0], s.vertical_m[1]);
     println!("joints     {}", line(&report.joint_names.join(", ")));

@@ -27,6 +27,7 @@ mod precision;
 mod quantize;
 mod robot;
 mod score;
+mod suggest;
 mod synth;
 mod train;
 mod view;

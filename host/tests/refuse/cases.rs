@@ -103,6 +103,10 @@ pub const CASES: &[(&str, &str)] = &[
     ("inspect walk.bvh --map map-none.toml", "[joints] is missing"),
     ("inspect walk.bvh --map map-binary.toml", "map-binary.toml"),
     ("apply weary.kin names.bvh --map map-hips.toml --out o.bvh", "Hip"),
+    ("inspect weary.kin --suggest-map", "expected a clip"),
+    ("inspect walk.bvh --suggest-map --map map-hips.toml", "cannot be used"),
+    ("inspect walk.bvh --suggest-map --strict", "cannot be used"),
+    ("apply weary.kin names.bvh --out o.bvh", "--suggest-map"),
     // Outputs.
     ("apply weary.kin walk.bvh --out out.txt", ".bvh"),
     ("apply weary.kin walk.bvh --out no/such/o.bvh", "does not exist"),

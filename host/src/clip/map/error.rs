@@ -68,6 +68,15 @@ pub enum MapError {
     /// The pelvis is always needed.
     #[error("[joints] has no pelvis, which is always needed. Add  pelvis = \"name of the hips joint\"")]
     NoPelvis,
+    /// A map cannot be suggested.
+    #[error(
+        "no map can be suggested: {found}; expected two legs, two arms and a trunk between them. Write the map by hand: \
+             `kinesic inspect --help` shows one"
+    )]
+    NoBody {
+        /// What was found instead.
+        found: String,
+    },
     /// A joint of the map is not in the skeleton.
     #[error(
         "{canonical} = \"{name}\": the skeleton has no joint of this name{}. `kinesic inspect` lists its joints",

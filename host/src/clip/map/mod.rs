@@ -8,6 +8,7 @@ mod file;
 mod layouts;
 mod partners;
 mod parts;
+mod shape;
 mod suggest;
 
 use std::path::Path;
@@ -15,6 +16,7 @@ use std::path::Path;
 pub use error::MapError;
 pub use file::SkeletonMap;
 pub use partners::mirror_partners;
+pub use shape::{Sides, Suggestion, Sure, Witness, suggest};
 pub use suggest::nearest;
 
 use super::Skeleton;

@@ -86,6 +86,11 @@ fn parts(name: &str) -> (i8, String) {
     (side, bone)
 }
 
+/// The side that a name says: -1 left, 1 right, 0 none.
+pub(super) fn side(name: &str) -> i8 {
+    parts(name).0
+}
+
 /// The joints by their names' parts; none where pelvis, head or a limb are not all there, or hang together otherwise.
 pub(super) fn fit(skeleton: &Skeleton) -> Option<JointMap> {
     let mut index: HashMap<(i8, String), usize> = HashMap::new();

@@ -151,7 +151,10 @@ pub fn run(args: &Args) -> miette::Result<()> {
     }
     let joints = JointMap::choose(&clip.skeleton, options.map.as_ref()).into_diagnostic()?.ok_or_else(|| {
         miette!(
-            help = "--skeleton-map FILE.toml names them; kinesic inspect lists the clip's joints",
+            help = format!(
+                "--skeleton-map FILE.toml names them; kinesic inspect --suggest-map '{}' > FILE.toml makes one to look at",
+                path.display()
+            ),
             "{}: which joint is which is not known",
             path.display()
         )
