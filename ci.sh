@@ -179,7 +179,7 @@ fuzz() {
         cargo build --release --locked --manifest-path fuzz/Cargo.toml --target "$host"
     mkdir -p fuzz/artifacts fuzz/target/corpus
     log=$(mktemp)
-    for target in pack bvh csv map urdf; do
+    for target in pack bvh csv map urdf robot servos moves limbs; do
         # What is new goes to fuzz/target, so that later runs go on from there and the repository stays small.
         mkdir -p "fuzz/target/corpus/$target" "fuzz/artifacts/$target" "fuzz/regressions/$target"
         if "fuzz/target/$host/release/$target" -max_total_time="$seconds" -timeout=20 -rss_limit_mb=4096 -print_final_stats=1 \

@@ -1,5 +1,6 @@
 //! Clips and skeleton maps.
 
+use kinesic_host::clip::map::suggest;
 use kinesic_host::clip::{Clip, JointMap, ReadOptions, SkeletonMap, Unit, UpAxis, WriteOptions, bvh as reader, kinect};
 use kinesic_host::gait;
 use kinesic_host::retarget::retarget;
@@ -37,6 +38,7 @@ pub fn map(data: &[u8]) {
 
 fn used(clip: &Clip) {
     let _ = clip.summary();
+    let _ = suggest(clip);
     let Some(map) = JointMap::detect(&clip.skeleton) else { return };
     let Ok(own) = Rig::new(&clip.skeleton, &map) else { return };
     let _ = own.locals(&own.poses(clip));

@@ -7,9 +7,11 @@
 mod clips;
 mod engines;
 mod frames;
+mod machines;
 mod packs;
 mod robots;
 
 pub use clips::{bvh, csv, map};
+pub use machines::{limbs, moves, robot, servos};
 pub use packs::pack;
 pub use robots::urdf;

@@ -6,6 +6,8 @@
 
 #[path = "../../fuzz/src/lib.rs"]
 mod fuzz;
+#[path = "fuzz/machines.rs"]
+mod machines;
 #[path = "fuzz/corpus.rs"]
 mod seeds;
 
@@ -19,12 +21,16 @@ use rand::{RngExt, SeedableRng};
 /// A target, and how many damaged inputs a test run gives it.
 type Target = (&'static str, fn(&[u8]), usize);
 
-const TARGETS: [Target; 5] = [
+const TARGETS: [Target; 9] = [
     ("pack", fuzz::pack, 6000),
     ("bvh", fuzz::bvh, 2000),
     ("csv", fuzz::csv, 500),
     ("map", fuzz::map, 10_000),
     ("urdf", fuzz::urdf, 10_000),
+    ("robot", fuzz::robot, 5000),
+    ("servos", fuzz::servos, 5000),
+    ("moves", fuzz::moves, 5000),
+    ("limbs", fuzz::limbs, 5000),
 ];
 
 fn folder(kind: &str, target: &str) -> PathBuf {

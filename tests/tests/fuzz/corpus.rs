@@ -10,7 +10,7 @@ use kinesic_host::mechanics::{self, NamedClip, Split};
 use kinesic_host::pack::Provenance;
 use kinesic_host::translate::FormChoice;
 
-use crate::common;
+use crate::{common, machines};
 
 /// Writes all of them below `corpus`.
 pub fn write(corpus: &Path) {
@@ -30,6 +30,9 @@ pub fn write(corpus: &Path) {
     }
     for (name, text) in robots() {
         put("urdf", name, text.as_bytes());
+    }
+    for (target, name, text) in machines::seeds() {
+        put(target, name, text.as_bytes());
     }
     let maps = [
         (
