@@ -1,7 +1,9 @@
 //! What the numbers and names of a clip mean: rest pose, roots, axes, handedness, units, names, lost frames.
 
 use kinesic_host::clip::bvh::parse;
-use kinesic_host::clip::{Clip, Joint, JointMap, ReadOptions, Skeleton, Unit, UpAxis, WriteOptions};
+use kinesic_host::clip::{self, Clip, Joint, JointMap, NoteLog, ReadOptions, Skeleton, Unit, UpAxis, WriteOptions};
+use kinesic_host::gait;
+use kinesic_host::prepare::Source;
 use kinesic_host::retarget::retarget;
 use kinesic_host::rig::Rig;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -254,4 +256,31 @@ fn gltf_that_is_written_is_read_again() {
             .expect_err("empty")
             .contains("animation")
     );
+}
+
+#[test]
+fn of_too_many_joints_those_that_no_limb_needs_are_left_out() {
+    let mut clip = gait::walk(&gait::Manner::NEUTRAL, 1.0, 30.0, 0.0, 1);
+    let (frames, body) = (clip.frames(), clip.skeleton.len());
+    let hand = clip.skeleton.find("RightHand").expect("a hand");
+    assert_eq!(hand, body - 1);
+    clip.skeleton.joints[hand].end = None;
+    for at in 0..120 {
+        let offset = Vector3::new(0.01, -0.02, 0.001 * f64::from(at));
+        clip.skeleton.joints.push(Joint { name: format!("hair{at}"), parent: Some(hand), offset, end: None });
+    }
+    let still = vec![UnitQuaternion::identity(); 120];
+    clip.rotations = (0..frames).flat_map(|f| [&clip.rotations[f * body..(f + 1) * body], &still].concat()).collect();
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("hair.bvh");
+    clip.write_bvh(&path).expect("writable");
+    static LOG: NoteLog = NoteLog::new();
+    let options = ReadOptions { log: Some(&LOG), ..ReadOptions::default() };
+    let source = Source::read(&path, &options).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(source.clip.skeleton.len(), body);
+    source.rig().expect("a rig");
+    let notes = LOG.take().join("\n");
+    assert!(notes.contains("139 joints are more than the 128 of a rig: 120 that"), "{notes}");
+    // What only turns a clip about keeps all of them.
+    assert_eq!(clip::read(&path).expect("read").skeleton.len(), body + 120);
 }

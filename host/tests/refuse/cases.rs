@@ -161,6 +161,7 @@ pub const CASES: &[(&str, &str)] = &[
     // Training options.
     ("{t} --pair walk.bvh weary.bvh --fps -3", "frame rate"),
     ("{t} --pair walk.bvh weary.bvh --fps nan", "frame rate"),
+    ("{t} --pair walk.bvh weary.bvh --fps 1000", "expected at most 60, the rate of the fastest clip"),
     ("{t} --pair walk.bvh weary.bvh --order 1", "--order"),
     ("{t} --pair two-frames.bvh weary.bvh", "two-frames.bvh"),
     ("{t} --pair walk.bvh weary.bvh --precision i8", "expected f32 or i16"),
