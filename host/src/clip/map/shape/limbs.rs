@@ -82,7 +82,12 @@ pub(super) fn pairs(seen: &Seen, kind: Kind) -> Vec<Pair> {
 /// The two readings that go together best.
 fn best(seen: &Seen, on: usize, children: [usize; 2], left: &[Limb], right: &[Limb]) -> Option<Pair> {
     let depth = |joint| seen.above(joint).take_while(|&j| j != on).count() as f64;
-    let both = left.iter().flat_map(|a| right.iter().map(move |b| (*a, *b)));
+    // Two chains in one place are one limb and its helper.
+    let apart = |a: &Limb, b: &Limb| {
+        let way = seen.mean(|p| Some((p[a.joints[0]] - p[b.joints[0]]).norm()));
+        way.is_some_and(|way| way > 0.1 * a.bones[0])
+    };
+    let both = left.iter().flat_map(|a| right.iter().map(move |b| (*a, *b))).filter(|(a, b)| apart(a, b));
     let pairs = both.map(|(a, b)| {
         let lengths: f64 = a.bones.iter().zip(b.bones).map(|(x, y)| off_ratio(x / y, 1.0, 0.1)).sum();
         let depths: f64 = a.joints.iter().zip(b.joints).map(|(x, y)| off(depth(*x) - depth(y), 0.0, 0.5)).sum();

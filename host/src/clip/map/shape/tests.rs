@@ -112,6 +112,27 @@ fn helpers_twists_fingers_and_tips_are_skipped() {
 }
 
 #[test]
+fn doubled_legs_hair_and_a_sword_confuse_nothing() {
+    let mut clip = walking();
+    // As some rigs have it: each leg a second time, in the same place, that does not bend.
+    for side in ["Left", "Right"] {
+        let way = if side == "Left" { 1.0 } else { -1.0 };
+        let name = |part: &str| format!("{side}{part}");
+        grow(&mut clip, "Hips", &name("UpLegD"), [way * 0.09, -0.06, 0.0]);
+        grow(&mut clip, &name("UpLegD"), &name("LegD"), [0.0, -0.42, 0.0]);
+        grow(&mut clip, &name("LegD"), &name("FootD"), [0.0, -0.41, 0.0]);
+    }
+    grow(&mut clip, "Head", "Hair1", [0.0, 0.05, -0.1]);
+    for at in 1..5 {
+        grow(&mut clip, &format!("Hair{at}"), &format!("Hair{}", at + 1), [0.0, -0.12, -0.01]);
+    }
+    grow(&mut clip, "RightHand", "Sword", [0.0, -0.08, 0.05]);
+    grow(&mut clip, "Sword", "SwordTip", [0.0, 0.0, 0.9]);
+    let made = nameless(&clip);
+    assert_eq!(wrong(&clip, &made), Vec::<&str>::new(), "{}", made.toml);
+}
+
+#[test]
 fn joints_in_one_place_are_told_apart_by_what_hangs_on_them() {
     let mut clip = walking();
     // As the CMU database has it: a joint on the hips for each leg, one on the chest for each arm and the neck.

@@ -1,5 +1,7 @@
 //! Between the limbs: spine, chest, neck, head, and the ends of the limbs.
 
+use nalgebra::Vector3;
+
 use super::body::Body;
 use super::limbs::Limb;
 use super::seen::Seen;
@@ -8,6 +10,9 @@ use crate::clip::map::Canonical::{self, *};
 
 /// A branch of less than this share of the longest one is a helper.
 const HELPER: f64 = 0.3;
+
+/// The head points up at least so much (cosine with the trunk), and so much what would lie beyond it: people stoop, and hair falls.
+const RISES: [f64; 2] = [0.2, 0.6];
 
 /// All canonical joints of a body, with the limbs that `left` says first on the left side.
 pub(super) fn joints(seen: &Seen, body: &Body, left: usize) -> [Option<usize>; CANONICAL] {
@@ -65,7 +70,22 @@ fn collar(seen: &Seen, arm: &Limb, on: usize) -> Option<usize> {
     })
 }
 
-/// Neck and head: the chain up to where a face begins, without its tip.
+/// Joints of a chain that are not in one place.
+fn bones(seen: &Seen, chain: &[usize]) -> usize {
+    chain.iter().filter(|&&j| !seen.is_doubled(j)).count()
+}
+
+/// Whether the bone to a joint goes on where the trunk points, beyond a chain.
+fn rises(seen: &Seen, body: &Body, joint: usize, chain: &[usize]) -> bool {
+    let Some(parent) = seen.above(joint).nth(1) else { return false };
+    let along = |p: &[Vector3<f64>]| {
+        let bone = (p[joint] - p[parent]).try_normalize(1e-9)?;
+        Some(bone.dot(&(p[body.arms.on] - p[body.pelvis]).try_normalize(1e-9)?))
+    };
+    seen.is_doubled(joint) || seen.mean(along).is_none_or(|cosine| cosine > RISES[usize::from(bones(seen, chain) > 1)])
+}
+
+/// Neck and head: the chain up to where a face begins or hair falls, without its tip.
 fn head(seen: &Seen, body: &Body) -> (Option<usize>, Option<usize>) {
     let mut chain: Vec<usize> = Vec::new();
     let mut at = body.neck;
@@ -75,7 +95,7 @@ fn head(seen: &Seen, body: &Body) -> (Option<usize>, Option<usize>) {
         let longest = outwards(seen, joint);
         let enough = longest.map_or(0.0, |c| HELPER * far(c));
         let branches = seen.children[joint].iter().filter(|&&c| far(c) > enough).count();
-        at = longest.filter(|_| branches == 1);
+        at = longest.filter(|&next| branches == 1 && rises(seen, body, next, &chain));
     }
     // A leaf that never turns and ends a long bone is the top of the head.
     let tip = |chain: &[usize]| match *chain {
@@ -84,8 +104,7 @@ fn head(seen: &Seen, body: &Body) -> (Option<usize>, Option<usize>) {
         }
         _ => false,
     };
-    let bones = |chain: &[usize]| chain.iter().filter(|&&j| !seen.is_doubled(j)).count();
-    if bones(&chain) > 1 && tip(&chain) {
+    if bones(seen, &chain) > 1 && tip(&chain) {
         chain.pop();
     }
     let head = chain.last().copied();
