@@ -156,6 +156,15 @@ fn other_rates_keep_the_motion_and_what_is_beside_it() {
 }
 
 #[test]
+fn a_name_with_another_separator_is_read_as_it_was_written() {
+    let text = r#"{"fps": 50, "joints": {"a;b;c;d;e_deg": [1, 2], "d\te": [3, 4]}}"#;
+    let moves = of("a.json", text);
+    let again = of("b.csv", &moves.to_csv());
+    assert_eq!((&again.channels, &again.values), (&moves.channels, &moves.values), "{}", moves.to_csv());
+    assert!(is_moves(Path::new("b.csv"), moves.to_csv().as_bytes()));
+}
+
+#[test]
 fn no_bytes_make_it_panic() {
     let mut random = ChaCha8Rng::seed_from_u64(5);
     for (name, text) in ALL {

@@ -27,8 +27,10 @@ pub(super) fn is_motion(head: &str) -> bool {
     names.iter().any(|name| number(name, separator).is_none()) && numbers > 0 && (clock || units || lists)
 }
 
+/// What most cells are parted by; what stands in quotes is part of a name.
 fn separator(header: &str) -> char {
-    let count = |separator: char| header.matches(separator).count();
+    let count =
+        |separator: char| header.split('"').step_by(2).map(|text| text.matches(separator).count()).sum::<usize>();
     [',', ';', '\t'].into_iter().max_by_key(|separator| (count(*separator), *separator == ',')).unwrap_or(',')
 }
 
