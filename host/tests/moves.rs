@@ -99,10 +99,11 @@ fn the_table_that_kinesic_writes_of_a_body_is_read() {
 
 #[test]
 fn traps_are_refused_with_their_place() {
-    let traps: [(&str, &str, &[&str]); 22] = [
+    let traps: [(&str, &str, &[&str]); 23] = [
         ("a.csv", "pan_deg,tilt_deg\n1,2\n3,4\n", &["--rate"]),
         ("a.csv", "t,pan_deg\n0,1\n0,2\n", &["line 3", "rise"]),
         ("a.csv", "t,pan_deg\n0.1,1\n0,2\n", &["line 3", "0.1"]),
+        ("a.csv", "t,pan_deg\n0,1\n1e-8,2\n", &["line 3", "1e-8 s apart", "at least 1e-6", "time_ms"]),
         ("a.csv", "t,pan_deg,pan_deg\n0,1,2\n1,2,3\n", &["pan", "twice"]),
         ("a.csv", "t,pan_deg\n0,1\n1,2,3\n", &["line 3", "3 cells", "expected 2"]),
         ("a.csv", "t,pan_deg\n0,1\n1,NaN\n2,3\n", &["line 3", "pan_deg", "NaN", "finite"]),

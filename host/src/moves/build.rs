@@ -22,6 +22,9 @@ pub(super) struct Draft {
     pub place: Box<dyn Fn(usize) -> String>,
 }
 
+/// Frames nearer to each other, s, are no motion, and would be at one time where they are written.
+const SHORTEST: f64 = 1e-6;
+
 impl Draft {
     /// The motion, or what is wrong with it.
     pub fn finish(mut self, options: &Options) -> Result<Moves, MovesError> {
@@ -99,6 +102,14 @@ impl Draft {
                     (self.place)(frame + 1),
                     what,
                     "sort the frames, or cut the repeated ones out",
+                ));
+            }
+            if pair[1] - pair[0] < SHORTEST {
+                let what = format!("found frames {:e} s apart, expected at least {SHORTEST:e}", pair[1] - pair[0]);
+                return Err(MovesError::new(
+                    (self.place)(frame + 1),
+                    what,
+                    "say what the times count: time_s, time_ms, time_us",
                 ));
             }
         }
