@@ -4,13 +4,12 @@ mod drawn;
 mod visit;
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use image::{DynamicImage, RgbaImage};
 use kinesic_firmware_sim::browser::Browser;
 use kinesic_firmware_sim::build::{self, Folders};
 use kinesic_firmware_sim::toolchain;
-use kinesic_host::clip::{JointMap, ReadOptions};
+use kinesic_host::clip::JointMap;
 use kinesic_host::face::warp::Warp;
 use kinesic_host::face::{Wish, edit};
 use kinesic_host::gait::{Manner, walk};

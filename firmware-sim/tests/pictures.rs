@@ -5,9 +5,10 @@
 mod drawn;
 
 use std::path::Path;
+use std::sync::Arc;
 
 use kinesic_firmware_sim::browser::Browser;
-use kinesic_host::clip::{Clip, JointMap};
+use kinesic_host::clip::{Clip, JointMap, ReadOptions};
 use kinesic_host::emotion;
 use kinesic_host::gait::{Manner, walk};
 use kinesic_host::models;
@@ -15,6 +16,7 @@ use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_host::prepare::Source;
 use kinesic_host::report::{latency, stick_figures};
 use kinesic_host::rig::Rig;
+use kinesic_host::robot::Machine;
 use kinesic_host::translate::{Settings, play};
 use kinesic_host::view::{self, View, ViewClip, ViewPack};
 
@@ -132,6 +134,31 @@ fn the_live_page() {
     let packs = packs.map(|(name, file)| ViewPack { name: name.to_owned(), file, look: None }).to_vec();
     let shown = View { packs, clips: vec![clip], ..View::default() };
     screenshot("page.png", &shown, "document.getElementById('play').click(); seek(2.1)", [1200, 860]);
+}
+
+/// The desk robot of `docs/robot.md`.
+#[test]
+#[ignore = "needs chromium: firmware-sim/setup.sh"]
+fn a_desk_robot() {
+    let pack = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/board/examples/desk/lively.kin");
+    let file = PackFile::read(&pack).unwrap();
+    let machine = Machine::from_pack(&file.pack().unwrap()).unwrap();
+    let row = |at: u32| {
+        let t = f64::from(at) / 50.0;
+        let swing = |rate: f64, most: f64| most * (rate * t).sin();
+        let angles = [swing(1.1, 25.0), swing(1.7, 10.0), swing(2.3, 20.0), swing(3.1, -20.0)];
+        format!("{t},{}\n", angles.map(|angle| angle.to_string()).join(","))
+    };
+    let rows: String = (0..400).map(row).collect();
+    let moves = tempfile::Builder::new().suffix(".csv").tempfile().unwrap();
+    let text = format!("time_s,pan_deg,tilt_deg,left_antenna_deg,right_antenna_deg\n{rows}");
+    std::fs::write(moves.path(), text).unwrap();
+    let options = ReadOptions { machine: machine.map(Arc::new), ..ReadOptions::default() };
+    let source = Source::read(moves.path(), &options).unwrap();
+    let packs = vec![ViewPack { name: "lively".to_owned(), file, look: None }];
+    let clips = vec![ViewClip { name: "a calm move".to_owned(), source, target: None }];
+    let shown = View { packs, clips, ..View::default() };
+    screenshot("robot.png", &shown, "document.getElementById('play').click(); seek(4.4)", [1100, 620]);
 }
 
 #[test]

@@ -218,8 +218,23 @@ fn the_firmware_of_the_desk_robot_has_what_its_page_makes() {
     for name in ["lively.kin", "calm.rs"] {
         let made = std::fs::read(folder.path().join(name)).unwrap();
         let kept = std::fs::read(repository().join("docs/board/examples/desk").join(name)).unwrap();
-        assert!(made == kept, "docs/board/examples/desk/{name} is not what docs/robot.md makes: copy it from there");
+        assert!(
+            same(&made, &kept),
+            "docs/board/examples/desk/{name} is not what docs/robot.md makes: copy it from there"
+        );
     }
+}
+
+/// The same files but for the last bits of a training's numbers, which depend on the processor, and the checksum of a pack over them.
+fn same(a: &[u8], b: &[u8]) -> bool {
+    const CHECKSUM: usize = 16;
+    let words = |bytes: &[u8]| bytes.chunks_exact(4).map(|word| word.try_into().unwrap()).collect::<Vec<[u8; 4]>>();
+    let near = |(at, (a, b)): (usize, (&[u8; 4], &[u8; 4]))| {
+        a == b || 4 * at == CHECKSUM || (f32::from_le_bytes(*a) - f32::from_le_bytes(*b)).abs() < 1e-6
+    };
+    let (first, second) = (words(a), words(b));
+    let rest = |bytes: &[u8]| bytes.chunks_exact(4).remainder().to_vec();
+    a.len() == b.len() && rest(a) == rest(b) && first.iter().zip(&second).enumerate().all(near)
 }
 
 #[test]

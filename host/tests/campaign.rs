@@ -140,7 +140,7 @@ fn use_everywhere(file: &PackFile, shown: &Shown) -> bool {
     if models.iter().any(|m| m.face().is_some()) {
         return true;
     }
-    let packs = || vec![ViewPack { name: "made".to_owned(), file: file.clone() }];
+    let packs = || vec![ViewPack { name: "made".to_owned(), file: file.clone(), look: None }];
     let has = |such: fn(&ModelMeta) -> bool| models.iter().any(such);
     let mut view = View::default();
     if has(|m| m.emotion().is_some()) {

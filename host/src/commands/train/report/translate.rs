@@ -52,13 +52,7 @@ pub fn page(trained: &Trained, report: &Report, first: &NamedPair, rig: &Rig, fi
         rows,
     });
     page.table(&angles::table(&angles::columns(&report.errors), "Angle to the target, mean of the training pairs"));
-    let curve = Curve::most_changed(&pack, rig, [source, target])?;
-    page.chart(&Chart {
-        caption: curve.caption,
-        x: "frame",
-        y: curve.unit,
-        lines: clips.iter().map(|(name, clip)| Line::of(name, &(curve.value)(clip))).collect(),
-    });
+    page.chart(&most_changed(&pack, rig, &clips)?);
     page.heading("How it was chosen").table(&Table {
         caption:
             "Ways to bring the clips together, and the error on the training pairs of each, cm; the smallest was taken"
@@ -81,50 +75,43 @@ pub fn page(trained: &Trained, report: &Report, first: &NamedPair, rig: &Rig, fi
     Ok(page)
 }
 
-/// What is plotted of every clip.
-struct Curve {
-    caption: String,
-    unit: &'static str,
-    value: Box<dyn Fn(&Clip) -> Vec<f64>>,
-}
-
-impl Curve {
-    /// Of a body the height of the joint whose mean height differs most between two clips; of a robot the coordinate that goes farther.
-    fn most_changed(pack: &Pack, rig: &Rig, [source, target]: [&Clip; 2]) -> miette::Result<Self> {
-        let most = |count: usize, change: &dyn Fn(usize) -> f64| {
-            (0..count).max_by(|a, b| change(*a).total_cmp(&change(*b))).unwrap_or(0)
-        };
-        let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len().max(1) as f64;
-        if let Some(machine) = Machine::from_pack(pack).into_diagnostic()? {
-            let of = |clip: &Clip, at: usize, scale: f64| -> Vec<f64> {
-                (0..clip.frames()).filter_map(|frame| Some(scale * clip.coordinates(frame)?.get(at)?)).collect()
-            };
-            let swing = |clip: &Clip, at: usize| {
-                let values = of(clip, at, 1.0);
-                let middle = mean(&values);
-                values.iter().map(|x| (x - middle).abs()).sum::<f64>() / values.len().max(1) as f64
-            };
-            let coordinate = most(machine.servos.len(), &|at| (swing(source, at) - swing(target, at)).abs());
-            let slides = machine.rig.frames().places().any(|(kind, at)| kind == JointKind::Slider && at == coordinate);
-            let (unit, scale) = if slides { ("mm", 1000.0) } else { ("degrees", 180.0 / std::f64::consts::PI) };
-            let name = plain::line(&machine.servos[coordinate].name);
-            return Ok(Self {
-                caption: format!("Joint {name}, {unit}: its swing changes most, in the first pair."),
-                unit,
-                value: Box::new(move |clip| of(clip, coordinate, scale)),
-            });
-        }
+/// Of a body the height of the joint whose mean height differs most between the first clip and the last; of a robot the coordinate whose
+/// swing does.
+fn most_changed(pack: &Pack, rig: &Rig, clips: &[(&str, &Clip); 3]) -> miette::Result<Chart> {
+    let [(_, source), _, (_, target)] = *clips;
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len().max(1) as f64;
+    let most = |count: usize, change: &dyn Fn(usize) -> f64| {
+        (0..count).max_by(|a, b| change(*a).total_cmp(&change(*b))).unwrap_or(0)
+    };
+    let chart = |caption: String, y: &'static str, value: &dyn Fn(&Clip) -> Vec<f64>| Chart {
+        caption,
+        x: "frame",
+        y,
+        lines: clips.iter().map(|(name, clip)| Line::of(name, &value(clip))).collect(),
+    };
+    let Some(machine) = Machine::from_pack(pack).into_diagnostic()? else {
         let height = |clip: &Clip, joint: usize| -> Vec<f64> {
             (0..clip.frames()).map(|frame| clip.positions(frame)[joint].y).collect()
         };
         let joint = most(rig.joints(), &|joint| (mean(&height(source, joint)) - mean(&height(target, joint))).abs());
         let name = &rig.skeleton.joints[joint].name;
-        Ok(Self {
-            caption: format!(
-                "Height of {name} over the ground, m: the joint whose mean height the style changes most, in the first pair."
-            ),
-            unit: "height, m",
-            value: Box::new(move |clip| height(clip, joint)),
-        })
-    }
+        let caption = format!(
+            "Height of {name} over the ground, m: the joint whose mean height the style changes most, in the first pair."
+        );
+        return Ok(chart(caption, "height, m", &|clip| height(clip, joint)));
+    };
+    let of = |clip: &Clip, at: usize, scale: f64| -> Vec<f64> {
+        (0..clip.frames()).filter_map(|frame| Some(scale * clip.coordinates(frame)?.get(at)?)).collect()
+    };
+    let swing = |clip: &Clip, at: usize| {
+        let values = of(clip, at, 1.0);
+        let middle = mean(&values);
+        mean(&values.iter().map(|x| (x - middle).abs()).collect::<Vec<_>>())
+    };
+    let at = most(machine.servos.len(), &|at| (swing(source, at) - swing(target, at)).abs());
+    let slides = machine.rig.frames().places().any(|(kind, first)| kind == JointKind::Slider && first == at);
+    let (unit, scale) = if slides { ("mm", 1000.0) } else { ("degrees", 180.0 / std::f64::consts::PI) };
+    let name = plain::line(&machine.servos[at].name);
+    let caption = format!("Joint {name}, {unit}: its swing changes most, in the first pair.");
+    Ok(chart(caption, unit, &|clip| of(clip, at, scale)))
 }
