@@ -3,7 +3,7 @@
 // From where light falls, length one.
 const LIGHT = [0.3, 0.8, 0.52];
 const SHADES = 24;
-const GROWN = 0.7; // pixels
+const GROWN = 1.2; // pixels
 
 class Solid {
   constructor({ vertices, triangles, colour, closed }) {
