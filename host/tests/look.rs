@@ -133,6 +133,25 @@ fn a_pose_moves_the_link_that_is_named_about_its_origin() {
         let error = Look::of_robot(&machine, &robot, Path::new("."), &drives).unwrap_err();
         assert_eq!(error.to_string(), expected);
     }
+    let twice = [drives("gaze", "lamp"), drives("gaze", "arm")].concat();
+    assert!(
+        Look::of_robot(&machine, &robot, Path::new("."), &twice).unwrap_err().to_string().ends_with("is given twice")
+    );
+}
+
+#[test]
+fn a_description_of_another_robot_with_the_same_names_is_refused() {
+    let (_, machine) = crane();
+    let axis = r#"<axis xyz="0.6 0 0.8"/>"#;
+    for (text, found) in [
+        (CRANE.replace("\"shoulder\" type=\"revolute\"", "\"shoulder\" type=\"prismatic\""), "prismatic"),
+        (CRANE.replace("\"shoulder\" type=\"revolute\"", "\"shoulder\" type=\"fixed\""), "fixed"),
+        (CRANE.replace(axis, &format!("{axis}<mimic joint=\"finger\"/>")), "follower"),
+    ] {
+        let error = Look::of_robot(&machine, &Robot::parse(&text).unwrap(), Path::new("."), &[]).unwrap_err();
+        let expected = format!("found a joint of type {found}, expected a hinge that moves by itself, as in the pack");
+        assert!(error.to_string().starts_with("line ") && error.to_string().ends_with(&expected), "{error}");
+    }
 }
 
 #[test]
@@ -174,7 +193,7 @@ fn meshes_are_drawn_with_few_triangles_and_those_that_are_not_there_are_said() {
     let without = look();
     assert_eq!(
         without.notes.last().unwrap(),
-        "1 mesh is not drawn, bones stand in: 'package://crane/lamp.stl' is not there"
+        "1 mesh is not drawn, bones stand in: 'package://crane/lamp.stl' is no file there"
     );
     assert_eq!(solids(&without), [1, 1, 1, 0, 0, 0]);
     assert_eq!(without.links[0].solids[0].colour, Some([0.2, 0.4, 0.6]));
@@ -184,7 +203,7 @@ fn meshes_are_drawn_with_few_triangles_and_those_that_are_not_there_are_said() {
     assert!(look().notes.last().unwrap().ends_with("is a pointer of Git LFS, not the mesh: run `git lfs pull` there"));
     std::fs::write(folder.path().join("lamp.stl"), stl(50_000)).unwrap();
     let with = look();
-    assert!(with.notes.is_empty(), "{:?}", with.notes);
+    assert_eq!(with.notes, ["drawn with at most 4500 of its 50260 triangles: small parts lose their shape"]);
     let count: usize = with.links.iter().flat_map(|link| &link.solids).map(|solid| solid.triangles.len()).sum();
     assert!((TRIANGLES / 4..=TRIANGLES).contains(&count), "{count}");
     let lamp = &with.links[5].solids[0];

@@ -38,19 +38,30 @@ impl Core<ROWS> for FromFirst {
     }
 
     fn step(&self, state: &mut Self::State, frame: &mut Frame<ROWS>) {
-        if !state.1 {
+        let is_first = !state.1;
+        if is_first {
             self.start(state, frame);
         }
-        self.0.step(&mut state.0, frame);
+        let (translator, components, limiter) = &self.0;
+        let (translator_state, components_state, limiter_state) = &mut state.0;
+        translator.step(translator_state, frame);
+        components.step(components_state, frame);
+        // Limits begin where the styled motion does, as `kinesic apply` has it.
+        if is_first {
+            limiter.start(limiter_state, frame);
+        }
+        limiter.step(limiter_state, frame);
     }
 }
 
 impl Engine {
-    /// The first engine of a pack that can be played.
+    /// The first engine of a pack that can be played; of a machine with its limits behind it.
     pub fn load(pack: &Pack<'static>) -> Result<Self, LoadError> {
-        let mut engine = Live::from_pack(pack)?;
+        let (mut engine, rig) = (Live::from_pack(pack)?, Rig::load(pack)?);
+        let limiter = engine.2.take().filter(|_| !rig.travels());
         let model = if live::keep_first(&mut engine) {
-            Model::Live { pipeline: Pipeline::new(Rig::load(pack)?, FromFirst(engine))?, state: PipelineState::new() }
+            engine.2 = limiter;
+            Model::Live { pipeline: Pipeline::new(rig, FromFirst(engine))?, state: PipelineState::new() }
         } else {
             Model::Mechanics { model: BodyMechanics::load(pack)?, states: [MechanicsState::new(); 2] }
         };

@@ -36,6 +36,7 @@ Examples:
   kinesic view models/mechanics.kin walk.bvh dance.bvh
   kinesic view anger.kin
   kinesic view lively.kin wave.csv --model desk.urdf
+  kinesic view lively.kin nod.json --model mini.urdf --drives head=head_link --drives body_yaw=yaw_joint
   kinesic view smile.kin --image me.jpg --landmarks me.csv --out me.html")]
 pub struct Args {
     /// Packs (.kin) and clips (BVH, Kinect CSV, a robot's moves, or folders of them), in any order
@@ -44,11 +45,12 @@ pub struct Args {
     /// What the clip should become: shown beside it (may be repeated, in the order of the clips)
     #[arg(long, value_name = "CLIP")]
     target: Vec<PathBuf>,
-    /// The robot's description (URDF, or MJCF of MuJoCo): its links are drawn, with their meshes (STL, OBJ, COLLADA); without, bones
+    /// Description of the packs' robot (URDF, or MJCF of MuJoCo): its links are drawn, with their meshes (STL, OBJ, COLLADA), which are looked for from its folder
+    /// upwards; without, bones
     #[arg(long, value_name = "ROBOT.urdf")]
     model: Option<PathBuf>,
-    /// What the description calls otherwise: the link that a pose moves, or a joint's other name (may be repeated)
-    #[arg(long, value_name = "NAME=LINK", requires = "model", value_parser = drives)]
+    /// What the description calls otherwise: a pose of the pack and the link that it moves, or a joint of the pack and its name there (may be repeated)
+    #[arg(long, value_name = "NAME=LINK|JOINT", requires = "model", value_parser = drives)]
     drives: Vec<Drives>,
     /// Picture of a face for the face packs (JPEG or PNG; may be repeated)
     #[arg(long, value_name = "IN.jpg", requires = "landmarks")]
@@ -96,6 +98,13 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let (face_packs, packs) =
         read_packs(&packs, args)?.into_iter().partition::<Vec<_>, _>(|pack| holds(pack, |m| m.face().is_some()));
     let plays_clips = |m: &ModelMeta| known(m).player().is_some();
+    if let Some(pack) = packs.iter().find(|pack| !plays(pack)) {
+        return Err(miette!(
+            help = "learn a style first: kinesic train translate --robot ROBOT.kin --pair calm.csv lively.csv --out lively.kin",
+            "{}.kin has nothing to play: it holds limits alone, and no style",
+            pack.name
+        ));
+    }
     let (emotions, packs) = packs
         .into_iter()
         .partition::<Vec<_>, _>(|pack| holds(pack, |m| m.emotion().is_some()) && !holds(pack, plays_clips));
@@ -130,6 +139,20 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let faces = args.landmarks.as_ref().map(|table| photographed(&args.image, table)).transpose()?.unwrap_or_default();
     let mut shown = View { emotions, face_packs, faces: faces.into_iter().map(face).collect(), ..View::default() };
     let alone = shown.emotions.is_empty() && shown.faces.is_empty();
+    if let (Some(pack), []) = (packs.iter().find(|pack| machine(pack).is_some()), &clips[..]) {
+        return Err(miette!(
+            help = "name one that it should play: kinesic view lively.kin move.csv",
+            "{}.kin is a robot's pack, and there is no move of the robot",
+            pack.name
+        ));
+    }
+    let names = |of: fn(&ViewPack) -> bool| packs.iter().find(|pack| of(pack)).map(|pack| pack.name.clone());
+    if let (Some(robot), Some(body)) = (names(|pack| machine(pack).is_some()), names(|pack| machine(pack).is_none())) {
+        return Err(miette!(
+            help = "make a page of each",
+            "{robot}.kin is a robot's pack and {body}.kin a person's: no clip is one of both"
+        ));
+    }
     if !packs.is_empty() || !clips.is_empty() || alone {
         shown.packs = if packs.is_empty() { own_packs() } else { packs };
         shown.clips =
@@ -164,6 +187,17 @@ pub fn run(args: &Args) -> miette::Result<()> {
     Ok(())
 }
 
+/// Whether anything in a pack can be shown. (One that cannot be read is refused later.)
+fn plays(pack: &ViewPack) -> bool {
+    let shown = |m: &ModelMeta| known(m).player().is_some() || m.emotion().is_some() || m.face().is_some();
+    pack.file.pack().is_err() || holds(pack, shown)
+}
+
+/// The robot of a pack.
+fn machine(pack: &ViewPack) -> Option<Machine> {
+    Machine::from_pack(&pack.file.pack().ok()?).ok()?
+}
+
 /// Whether a pack holds such a model. (One that cannot be read holds none; the page's maker says why.)
 fn holds(pack: &ViewPack, such: impl Fn(&ModelMeta) -> bool) -> bool {
     pack.file.pack().is_ok_and(|pack| pack.metadata().models.iter().any(|model| such(&model)))
@@ -183,7 +217,7 @@ fn own_packs() -> Vec<ViewPack> {
 }
 
 fn read_packs(paths: &[PathBuf], args: &Args) -> miette::Result<Vec<ViewPack>> {
-    let robot = args.model.as_ref().map(|path| Robot::read(path)).transpose()?;
+    let robot = args.model.as_ref().map(|path| description(path)).transpose()?;
     let mut notes = Vec::new();
     let mut machines = 0;
     let read = |path: &PathBuf| {
@@ -195,7 +229,7 @@ fn read_packs(paths: &[PathBuf], args: &Args) -> miette::Result<Vec<ViewPack>> {
             (Some(robot), Some(machine), Some(model)) => {
                 let folder = model.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
                 let look = Look::of_robot(&machine, robot, folder, &args.drives);
-                Some(look.map_err(|error| error.in_file(model))?)
+                Some(look.map_err(|error| error.in_file(model)).wrap_err_with(|| path.display().to_string())?)
             }
             _ => None,
         };
@@ -211,8 +245,21 @@ fn read_packs(paths: &[PathBuf], args: &Args) -> miette::Result<Vec<ViewPack>> {
         ));
     }
     notes.dedup();
-    notes.iter().for_each(|note| eprintln!("note: {}", plain::line(note)));
+    let model = args.model.as_ref().map_or(String::new(), |model| model.display().to_string());
+    notes.iter().for_each(|note| eprintln!("note: {}", plain::line(&format!("{model}: {note}"))));
     Ok(packs)
+}
+
+/// Reads a robot's description.
+fn description(path: &Path) -> miette::Result<Robot> {
+    if is_pack(path) || path.extension().is_some_and(|found| found.eq_ignore_ascii_case("toml")) {
+        return Err(miette!(
+            help = "leave --model out: the pack's bones are drawn",
+            "--model {}: found a pack or a table of servos, expected a description (URDF, or MJCF of MuJoCo): the others do not say how links look",
+            path.display()
+        ));
+    }
+    Ok(Robot::read(path)?)
 }
 
 /// `NAME=LINK`.

@@ -163,7 +163,7 @@ mod tests {
         let (model, rig) = synthetic::model(1);
         let shown = View { emotions: vec![of(&model, &rig)], ..View::default() };
         let html = page("title", "made", &shown, WASM).unwrap();
-        assert!(html.contains(r#""emotions":[{"name":"made""#) && html.contains(r#""clips":[]"#));
+        assert!(html.contains("\"emotions\":[{\"machine\":null,\"name\":\"made\"") && html.contains(r#""clips":[]"#));
         assert!(matches!(page("title", "made", &View::default(), WASM), Err(ViewError::Empty)));
     }
 

@@ -9,11 +9,11 @@ use serde::Serialize;
 use super::machine::MachineData;
 use super::{ViewClip, ViewError, ViewPack};
 use crate::clip::{Canonical, Clip, JointMap, Skeleton};
-use crate::engines;
 use crate::prepare::Source;
 use crate::rig::{HostFrame, MAX_JOINTS, Rig};
 use crate::robot::Machine;
 use crate::robot::look::Look;
+use crate::{engines, limit};
 
 /// Frames of each clip whose output the page compares with the host's.
 pub const CHECKED: usize = 300;
@@ -123,8 +123,13 @@ impl<'p> Player<'p> {
         let target = clip.target.as_ref().map(on_rig).transpose()?;
         let checked = &source.slice(0..CHECKED);
         let controls = Controls { strength: STRENGTH, ..Controls::default() };
-        let played = (self.player.play)(&self.pack, &self.rig, checked, controls);
-        let played = played.map_err(|error| ViewError::Pack { name: self.of.name.clone(), error })?;
+        let refuse = |error| ViewError::Pack { name: self.of.name.clone(), error };
+        let mut played = (self.player.play)(&self.pack, &self.rig, checked, controls).map_err(refuse)?;
+        // A machine's servos keep their limits, as on the device.
+        if !self.rig.frames().travels() {
+            let limited = limit::play(&self.pack, &self.rig, &played).map_err(refuse)?;
+            played = limited.map_or(played, |(clip, _)| clip);
+        }
         let text = |clip: &Clip| BASE64_STANDARD.encode(bytemuck::cast_slice(&frames(&self.rig, clip)));
         Ok(SceneData {
             source: text(&source),

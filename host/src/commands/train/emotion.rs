@@ -116,9 +116,13 @@ pub fn run(args: &Args) -> miette::Result<()> {
     session.say(format!("learning from {} clips", kept.len()));
     let names: Vec<String> = attributes.iter().map(|attribute| attribute.name.clone()).collect();
     let name = session.name(args.name.as_ref(), "motion");
-    let trained = train(&rig, &name, &names, &kept, &args.options())
+    let mut trained = train(&rig, &name, &names, &kept, &args.options())
         .into_diagnostic()
         .wrap_err_with(|| args.labels.display().to_string())?;
+    // A robot is told where to go at its own rate.
+    if let Some(machine) = &reading.machine {
+        trained.model.frame_rate = machine.limits.frame_rate as f32;
+    }
 
     let notes = attributes.iter().map(Attribute::note).chain(trained.notes.iter().cloned());
     let mut provenance = session.provenance(inputs, notes.collect());
@@ -141,7 +145,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     }
     let bytes = session.of_robot(trained.model.pack(&trained.rig, &provenance), &reading, &provenance)?;
     let file = session.write(&bytes)?;
-    let page = page(&trained, &training, unseen.as_ref(), &distances, &scorer, &kept, &pack)?;
+    let page = page(&trained, &training, unseen.as_ref(), &distances, &scorer, &kept, &file.pack().into_diagnostic()?)?;
     let summary = Summary {
         pack: args.out.display().to_string(),
         bytes: bytes.len(),

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 use std::path::Path;
 
+use kinesic::rig::JointKind;
 use nalgebra::Vector3;
 
 use super::solid::thinned;
@@ -11,7 +12,10 @@ use crate::robot::shape::Form;
 use crate::robot::{Machine, Motion, POSE, Robot, RobotError};
 
 /// Triangles of a robot at most: a page draws several robots, sixty times a second, without a graphics processor.
-pub const TRIANGLES: usize = 3000;
+pub const TRIANGLES: usize = 4500;
+
+/// What is larger, m, is in another unit.
+const FAR: f64 = 20.0;
 
 /// What a machine moves in a description that calls it otherwise.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,8 +46,11 @@ impl Look {
         }
         let (mut carried, mut renamed) = (HashMap::new(), HashMap::new());
         let zero = robot.frames();
-        for Drives { name, what } in drives {
+        for (at, Drives { name, what }) in drives.iter().enumerate() {
             let place = format!("{name}={what}");
+            if drives[..at].iter().any(|before| before.name == *name) {
+                return Err(RobotError::new(place, format!("'{name}' is given twice"), "give each name once"));
+            }
             if let Some(carrier) = last.get(name.as_str()) {
                 let links: Vec<&str> = robot.joints.iter().map(|joint| joint.child.as_str()).collect();
                 let named = known(&place, what, "link that a joint carries", &links)?;
@@ -63,7 +70,11 @@ impl Look {
                     &own.iter().copied().chain(poses).collect::<Vec<_>>(),
                 )?;
                 let joints: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
-                renamed.insert(name.as_str(), known(&place, what, "joint of the description", &joints)?);
+                // The link that a joint moves means the joint too.
+                let moved = robot.joints.iter().position(|joint| joint.child == *what);
+                let joint =
+                    known(&place, what, "joint of the description", &joints).or_else(|error| moved.ok_or(error))?;
+                renamed.insert(name.as_str(), joint);
             }
         }
         let mut place: HashMap<usize, usize> = HashMap::new();
@@ -119,6 +130,20 @@ impl Look {
                 missing.push(joint.name.as_str());
                 continue;
             };
+            let expected = match places[at].0 {
+                JointKind::Slider => Way::Slides,
+                JointKind::Hinge => Way::Turns,
+                _ => Way::Fixed,
+            };
+            let found = &robot.joints[own];
+            if expected != Way::Fixed && (self.links[place[&own]].way != expected || found.mimic.is_some()) {
+                let kind = if found.mimic.is_some() { "follower" } else { found.kind.as_str() };
+                let kinds = if expected == Way::Slides { "slider" } else { "hinge" };
+                let what =
+                    format!("found a joint of type {kind}, expected a {kinds} that moves by itself, as in the pack");
+                let help = "give the description from which `kinesic robot import` made the pack";
+                return Err(RobotError::new(format!("line {}, joint '{}'", found.line, found.name), what, help));
+            }
             self.joints[at] = place[&own];
             if places[at].0.coordinates() > 0 {
                 coordinates.insert(own, places[at].1);
@@ -172,12 +197,17 @@ impl Look {
                     Vec::new()
                 }),
             };
+            if parts.iter().any(|part| part.size() > FAR) {
+                let help = "a mesh in mm takes scale=\"0.001 0.001 0.001\"";
+                self.notes.push(format!("a part of '{}' is larger than {FAR} m: {help}", shape.link));
+            }
             let own = |part: Solid| {
                 let colour = shape.colour.or(part.colour);
                 (at, part.placed(&shape.at).coloured(colour))
             };
             solids.extend(parts.into_iter().map(own));
         }
+        let triangles: usize = solids.iter().map(|(_, solid)| solid.triangles.len()).sum();
         let (links, solids): (Vec<usize>, Vec<Solid>) = solids.into_iter().unzip();
         for (at, solid) in links.into_iter().zip(thinned(solids, TRIANGLES)) {
             self.links[at].solids.push(solid);
@@ -185,7 +215,13 @@ impl Look {
         if let Some(why) = why {
             let count = unread.len();
             let meshes = if count == 1 { "1 mesh is".to_owned() } else { format!("{count} meshes are") };
-            self.notes.push(format!("{meshes} not drawn, bones stand in: {why}"));
+            let first = if count == 1 { "" } else { "the first: " };
+            self.notes.push(format!("{meshes} not drawn, bones stand in: {first}{why}"));
+        }
+        if triangles > TRIANGLES {
+            self.notes.push(format!(
+                "drawn with at most {TRIANGLES} of its {triangles} triangles: small parts lose their shape"
+            ));
         }
         if self.links.iter().all(|link| link.solids.is_empty()) {
             if unread.is_empty() {

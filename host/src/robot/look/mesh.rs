@@ -15,7 +15,7 @@ const MOST: usize = 4_000_000;
 
 /// Finds and reads a mesh that a description in `folder` names; says why there is none.
 pub(super) fn read(name: &str, scale: &Vector3<f64>, folder: &Path) -> Result<Vec<Solid>, String> {
-    let path = find(name, folder).ok_or_else(|| format!("'{name}' is not there"))?;
+    let path = find(name, folder).ok_or_else(|| format!("'{name}' is no file there"))?;
     let shown = path.display();
     let bytes = files::read(&path).map_err(|error| format!("{shown} cannot be read: {error}"))?;
     if bytes.starts_with(b"version https://git-lfs") {
@@ -40,8 +40,15 @@ pub(super) fn read(name: &str, scale: &Vector3<f64>, folder: &Path) -> Result<Ve
         if !sound || triangles.len() > MOST {
             return Err(format!("{shown} is damaged: it has numbers that are no robot's"));
         }
+        let flat = triangles.iter().all(|[a, b, c]| vertices[*a] == vertices[*b] || vertices[*b] == vertices[*c]);
+        if flat {
+            continue;
+        }
         let colour = of(at).map(|[r, g, b, _]| [r, g, b].map(|x| f64::from(x).clamp(0.0, 1.0)));
         solids.push(Solid { vertices, triangles, colour });
+    }
+    if solids.is_empty() {
+        return Err(format!("{shown} has no triangle of any size"));
     }
     Ok(solids)
 }
@@ -103,7 +110,7 @@ mod tests {
             assert_eq!(solids[0].triangles.len(), 1, "{name}");
             assert_eq!(solids[0].vertices[1], Vector3::new(1.0, 0.0, 0.0));
         }
-        assert_eq!(read("arm.stl", &scale, &deep).unwrap_err(), "'arm.stl' is not there");
+        assert_eq!(read("arm.stl", &scale, &deep).unwrap_err(), "'arm.stl' is no file there");
         std::fs::write(deep.join("arm.step"), "ISO-10303-21;").unwrap();
         assert!(read("arm.step", &scale, &deep).unwrap_err().ends_with("is no STL, OBJ or COLLADA file"));
     }

@@ -99,14 +99,15 @@ impl Look {
         bones.chain(tips).collect()
     }
 
-    /// Least and greatest corner over all solids, m, at these coordinates.
+    /// Least and greatest corner over all solids, or over all links if there is none, m, at these coordinates.
     pub fn extent(&self, coordinates: &[f64]) -> [Vector3<f64>; 2] {
         let frames = self.placed(coordinates);
         let all = self.links.iter().zip(&frames).flat_map(|(link, frame)| {
             let vertices = link.solids.iter().flat_map(|solid| &solid.vertices);
             vertices.map(move |vertex| (frame * Point3::from(*vertex)).coords)
         });
-        let places = frames.iter().map(|frame| frame.translation.vector);
+        let bare = self.links.iter().all(|link| link.solids.is_empty());
+        let places = frames.iter().filter(|_| bare).map(|frame| frame.translation.vector);
         let [low, high] = [f64::INFINITY, f64::NEG_INFINITY].map(Vector3::repeat);
         all.chain(places).fold([low, high], |[low, high], vertex| [low.inf(&vertex), high.sup(&vertex)])
     }
@@ -118,8 +119,11 @@ impl Look {
             base.at = turn * base.at;
         }
         let [low, _] = self.extent(&[]);
+        // A world link may hold the robot somewhere else: where its first solid is, it stands.
+        let first = self.links.iter().position(|link| !link.solids.is_empty());
+        let under = first.map_or_else(Vector3::zeros, |link| self.placed(&[])[link].translation.vector);
         if let Some(base) = self.links.first_mut() {
-            base.at.translation.vector.y -= low.y;
+            base.at.translation.vector -= Vector3::new(under.x, low.y, under.z);
         }
         self
     }

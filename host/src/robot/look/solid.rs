@@ -162,6 +162,13 @@ impl Solid {
         self.triangles.iter().map(of).sum()
     }
 
+    /// Longest edge of the box around it, m.
+    pub(super) fn size(&self) -> f64 {
+        let [low, high] = [f64::INFINITY, f64::NEG_INFINITY].map(Vector3::repeat);
+        let [low, high] = self.vertices.iter().fold([low, high], |[low, high], v| [low.inf(v), high.sup(v)]);
+        (high - low).max().max(1e-9)
+    }
+
     /// With the triangles of a closed solid turned outside.
     fn outward(mut self) -> Self {
         if self.volume() < 0.0 {
@@ -188,14 +195,16 @@ impl Solid {
     }
 }
 
-/// Fewer triangles of several solids, in their order: at most `most`, by cells of one width for all. What is small has none left.
+/// Fewer triangles of several solids, in their order: at most `most`. Cells are smaller in small solids, by the root of how much smaller.
 pub(super) fn thinned(mut solids: Vec<Solid>, most: usize) -> Vec<Solid> {
     let total = |solids: &[Solid]| solids.iter().map(|solid| solid.triangles.len()).sum::<usize>();
-    let largest = solids.iter().flat_map(|solid| &solid.vertices).map(|vertex| vertex.amax()).fold(0.0, f64::max);
+    let sizes: Vec<f64> = solids.iter().map(Solid::size).collect();
+    let largest = sizes.iter().copied().fold(0.0, f64::max);
     let mut cell = largest / 500.0;
     while total(&solids) > most && cell > 0.0 {
-        solids = solids.iter().map(|solid| solid.coarser(cell)).collect();
-        cell *= 1.2;
+        let own = |size: f64| cell * (size / largest).sqrt();
+        solids = solids.iter().zip(&sizes).map(|(solid, size)| solid.coarser(own(*size))).collect();
+        cell *= 1.08;
     }
     solids.into_iter().map(Solid::outward).collect()
 }

@@ -78,7 +78,10 @@ fn three(node: Node, name: &str) -> Result<Option<Vector3<f64>>, String> {
     let all: Option<Vec<f64>> = text.split_whitespace().map(|x| x.parse().ok()).collect();
     match all.as_deref() {
         Some(&[x, y, z]) if [x, y, z].iter().all(|x| x.abs() < 1e6) => Ok(Some(Vector3::new(x, y, z))),
-        _ => Err(format!("<{} {name}=\"{text}\">: expected three numbers, as \"0 0 1\"", node.tag_name().name())),
+        _ => Err(format!(
+            "<{} {name}=\"{text}\">: expected three numbers below a million, as \"0 0 1\"",
+            node.tag_name().name()
+        )),
     }
 }
 

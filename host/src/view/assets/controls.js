@@ -46,6 +46,7 @@ function panel(pack, index) {
   const shown = element("input", { type: "checkbox", id: `shown-${index}`, checked: true });
   shown.addEventListener("change", () => { state.shown = shown.checked; show(); });
   set.append(element("p", { className: "soft small", textContent: `${pack.engine}, ${moving(pack).length} joints, ${pack.rate} frames a second, ${pack.size} bytes` }));
+  if (pack.machine) set.append(element("p", { className: "soft small", textContent: "Within the limits of the servos that the pack holds, as on the device." }));
   set.append(element("label", {}, shown, " shown"));
   set.append(slider({ id: `strength-${index}`, label: `${label} (${help})`, min: -0.5, max: 2.5, step: 0.05, value: state.strength,
     change: (value) => { state.strength = value; changed(); } }), warning);

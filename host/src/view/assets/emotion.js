@@ -144,7 +144,7 @@ class Emotion {
     set.append(...sliders, element("div", { className: "buttons" }, back), element("p", { className: "soft small", textContent:
       "Strengths are in units of the ranking that the pack was trained with. While it plays, a change goes on from where the motion is, " +
       "as on the device. Paused, the motion is made again from its first frame, and so it is where you go back to before the last change. " +
-      "While the picture follows, figures are carried along side by side, however fast they walk." }));
+      (pack.machine ? "Limits of servos are not kept here: synth keeps them." : "While the picture follows, figures are carried along side by side, however fast they walk.") }));
     return set;
   }
 }

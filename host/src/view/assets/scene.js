@@ -19,7 +19,7 @@ class Scene {
   // As many figures stand there, each with so much room: all of them are to be seen, unless the person has chosen a view.
   stand(count, { height, reach, front }) {
     // `slot`: metres between figures; `size`: against a person.
-    Object.assign(this, { count, front, slot: 2 * reach, size: Math.max((height + 0.4 * front) / 1.75, 0.85 * reach) });
+    Object.assign(this, { count, front, slot: 2 * reach * (front ? 1.15 : 1), size: Math.max((height + 0.4 * front) / 1.75, 0.85 * reach) });
     this.target[1] = 0.5 * height + 0.025 * this.size;
     if (!this.moved) this.reset();
   }
