@@ -4,6 +4,7 @@
 const LIGHT = [0.3, 0.8, 0.52];
 const SHADES = 24;
 const GROWN = 1.2; // pixels
+const FEW = 2500;
 
 class Solid {
   constructor({ vertices, triangles, colour, closed }) {
@@ -91,18 +92,27 @@ class Painter {
     const { context, count, depths, corners, styles, palette } = this;
     const order = Uint32Array.from({ length: count }, (_, at) => at).sort((a, b) => depths[b] - depths[a]);
     let open = -1;
+    // A line of their own colour closes the gaps between slivers, where there are few triangles.
+    const close = () => {
+      if (open < 0) return;
+      context.fill();
+      if (count < FEW) context.stroke();
+    };
+    context.lineWidth = 1;
+    context.lineJoin = "round";
     for (const at of order) {
       if (styles[at] !== open) {
-        if (open >= 0) context.fill();
+        close();
         open = styles[at];
-        context.fillStyle = palette[open];
+        context.fillStyle = context.strokeStyle = palette[open];
         context.beginPath();
       }
       const k = 6 * at;
       context.moveTo(corners[k], corners[k + 1]);
       context.lineTo(corners[k + 2], corners[k + 3]);
       context.lineTo(corners[k + 4], corners[k + 5]);
+      context.closePath();
     }
-    if (open >= 0) context.fill();
+    close();
   }
 }
