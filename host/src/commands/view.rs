@@ -98,13 +98,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let (face_packs, packs) =
         read_packs(&packs, args)?.into_iter().partition::<Vec<_>, _>(|pack| holds(pack, |m| m.face().is_some()));
     let plays_clips = |m: &ModelMeta| known(m).player().is_some();
-    if let Some(pack) = packs.iter().find(|pack| !plays(pack)) {
-        return Err(miette!(
-            help = "learn a style first: kinesic train translate --robot ROBOT.kin --pair calm.csv lively.csv --out lively.kin",
-            "{}.kin has nothing to play: it holds limits alone, and no style",
-            pack.name
-        ));
-    }
+    check_plays(&packs)?;
     let (emotions, packs) = packs
         .into_iter()
         .partition::<Vec<_>, _>(|pack| holds(pack, |m| m.emotion().is_some()) && !holds(pack, plays_clips));
@@ -139,20 +133,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let faces = args.landmarks.as_ref().map(|table| photographed(&args.image, table)).transpose()?.unwrap_or_default();
     let mut shown = View { emotions, face_packs, faces: faces.into_iter().map(face).collect(), ..View::default() };
     let alone = shown.emotions.is_empty() && shown.faces.is_empty();
-    if let (Some(pack), []) = (packs.iter().find(|pack| machine(pack).is_some()), &clips[..]) {
-        return Err(miette!(
-            help = "name one that it should play: kinesic view lively.kin move.csv",
-            "{}.kin is a robot's pack, and there is no move of the robot",
-            pack.name
-        ));
-    }
-    let names = |of: fn(&ViewPack) -> bool| packs.iter().find(|pack| of(pack)).map(|pack| pack.name.clone());
-    if let (Some(robot), Some(body)) = (names(|pack| machine(pack).is_some()), names(|pack| machine(pack).is_none())) {
-        return Err(miette!(
-            help = "make a page of each",
-            "{robot}.kin is a robot's pack and {body}.kin a person's: no clip is one of both"
-        ));
-    }
+    check_robots(&packs, &clips)?;
     if !packs.is_empty() || !clips.is_empty() || alone {
         shown.packs = if packs.is_empty() { own_packs() } else { packs };
         shown.clips =
@@ -184,6 +165,37 @@ pub fn run(args: &Args) -> miette::Result<()> {
         .map(|(what, names)| list(what, names));
     println!("{}: {} bytes{packs}{clips}{faces}", summary.out, summary.bytes);
     println!("Open it in a browser.");
+    Ok(())
+}
+
+/// Refuses packs of limits alone.
+fn check_plays(packs: &[ViewPack]) -> miette::Result<()> {
+    if let Some(pack) = packs.iter().find(|pack| !plays(pack)) {
+        return Err(miette!(
+            help = "learn a style first: kinesic train translate --robot ROBOT.kin --pair calm.csv lively.csv --out lively.kin",
+            "{}.kin has nothing to play: it holds limits alone, and no style",
+            pack.name
+        ));
+    }
+    Ok(())
+}
+
+/// Refuses packs for clips that have no clip in common, and a robot's without one: a made-up walk is no robot's.
+fn check_robots(packs: &[ViewPack], clips: &[PathBuf]) -> miette::Result<()> {
+    if let (Some(pack), []) = (packs.iter().find(|pack| machine(pack).is_some()), clips) {
+        return Err(miette!(
+            help = "name one that it should play: kinesic view lively.kin move.csv",
+            "{}.kin is a robot's pack, and there is no move of the robot",
+            pack.name
+        ));
+    }
+    let names = |of: fn(&ViewPack) -> bool| packs.iter().find(|pack| of(pack)).map(|pack| pack.name.clone());
+    if let (Some(robot), Some(body)) = (names(|pack| machine(pack).is_some()), names(|pack| machine(pack).is_none())) {
+        return Err(miette!(
+            help = "make a page of each",
+            "{robot}.kin is a robot's pack and {body}.kin a person's: no clip is one of both"
+        ));
+    }
     Ok(())
 }
 

@@ -4,12 +4,12 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use kinesic::rig::JointKind;
-use nalgebra::Vector3;
+use nalgebra::{Isometry3, Vector3};
 
 use super::solid::thinned;
 use super::{Drive, Link, Look, Solid, Way, mesh};
 use crate::robot::shape::Form;
-use crate::robot::{Machine, Motion, POSE, Robot, RobotError};
+use crate::robot::{Machine, Motion, POSE, Robot, RobotError, RobotJoint};
 
 /// Triangles of a robot at most: a page draws several robots, sixty times a second, without a graphics processor.
 pub const TRIANGLES: usize = 4500;
@@ -44,38 +44,9 @@ impl Look {
             look.links.push(Link { parent, solids: Vec::new(), ..plain.links[joint].clone() });
             last.insert(pose, look.joints[joint]);
         }
-        let (mut carried, mut renamed) = (HashMap::new(), HashMap::new());
-        let zero = robot.frames();
-        for (at, Drives { name, what }) in drives.iter().enumerate() {
-            let place = format!("{name}={what}");
-            if drives[..at].iter().any(|before| before.name == *name) {
-                return Err(RobotError::new(place, format!("'{name}' is given twice"), "give each name once"));
-            }
-            if let Some(carrier) = last.get(name.as_str()) {
-                let links: Vec<&str> = robot.joints.iter().map(|joint| joint.child.as_str()).collect();
-                let named = known(&place, what, "link that a joint carries", &links)?;
-                // A pose turns about the link's origin, with the axes of the base, and moves all that is fixed to the link.
-                let centre = zero[named].translation;
-                look.links[first[name.as_str()]].at.translation.vector += centre.vector;
-                let whole =
-                    robot.chain(named).find(|joint| robot.joints[*joint].motion != Motion::Fixed).unwrap_or(named);
-                carried.insert(whole, (*carrier, centre.inverse() * zero[whole]));
-            } else {
-                let own: Vec<&str> = machine.rig.skeleton.joints.iter().map(|joint| joint.name.as_str()).collect();
-                let poses = last.keys().copied();
-                known(
-                    &place,
-                    name,
-                    "pose or joint of the pack",
-                    &own.iter().copied().chain(poses).collect::<Vec<_>>(),
-                )?;
-                let joints: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
-                // The link that a joint moves means the joint too.
-                let moved = robot.joints.iter().position(|joint| joint.child == *what);
-                let joint =
-                    known(&place, what, "joint of the description", &joints).or_else(|error| moved.ok_or(error))?;
-                renamed.insert(name.as_str(), joint);
-            }
+        let named = Named::new(machine, robot, &last, drives)?;
+        for (pose, centre) in &named.centres {
+            look.links[first[pose]].at.translation.vector += centre;
         }
         let mut place: HashMap<usize, usize> = HashMap::new();
         for at in robot.depth_first() {
@@ -85,7 +56,7 @@ impl Look {
                 Motion::Prismatic => Way::Slides,
                 Motion::Fixed | Motion::Other(_) => Way::Fixed,
             };
-            let (parent, from, way) = match carried.get(&at) {
+            let (parent, from, way) = match named.carried.get(&at) {
                 Some((carrier, from)) => (*carrier, *from, Way::Fixed),
                 None => (joint.parent.map_or(0, |parent| place[&parent]), joint.origin, way),
             };
@@ -100,7 +71,7 @@ impl Look {
                 tip: None,
             });
         }
-        look.drive(machine, robot, &place, |joint| poses.iter().any(|(pose, _)| *pose == joint), &renamed)?;
+        look.drive(machine, robot, &place, |joint| poses.iter().any(|(pose, _)| *pose == joint), &named.joints)?;
         look.shape(robot, folder, &place);
         for (pose, link) in last.into_iter().filter(|(pose, _)| !drives.iter().any(|one| one.name == *pose)) {
             look.links[link].solids.push(Solid::cuboid(&Vector3::repeat(0.05)));
@@ -241,6 +212,55 @@ impl Look {
                 self.links[parent].solids.push(Solid::bone(&to, 0.08 * to.norm()));
             }
         }
+    }
+}
+
+/// What a caller says of names.
+#[derive(Default)]
+struct Named<'a> {
+    /// Where poses turn, in the base's frame at 0, m.
+    centres: Vec<(&'a str, Vector3<f64>)>,
+    /// Joints whose link hangs on the last link of a pose, and its frame in that.
+    carried: HashMap<usize, (usize, Isometry3<f64>)>,
+    /// Joints of the machine and of the description.
+    joints: HashMap<&'a str, usize>,
+}
+
+impl<'a> Named<'a> {
+    /// `last`: every pose's last link.
+    fn new(
+        machine: &Machine,
+        robot: &Robot,
+        last: &HashMap<&str, usize>,
+        drives: &'a [Drives],
+    ) -> Result<Self, RobotError> {
+        let mut named = Self::default();
+        let zero = robot.frames();
+        let names = |of: fn(&RobotJoint) -> &str| robot.joints.iter().map(of).collect::<Vec<_>>();
+        let links = names(|joint| joint.child.as_str());
+        for (at, Drives { name, what }) in drives.iter().enumerate() {
+            let place = format!("{name}={what}");
+            if drives[..at].iter().any(|before| before.name == *name) {
+                return Err(RobotError::new(place, format!("'{name}' is given twice"), "give each name once"));
+            }
+            if let Some(carrier) = last.get(name.as_str()) {
+                let link = known(&place, what, "link that a joint carries", &links)?;
+                // A pose turns about the link's origin, with the axes of the base, and moves all that is fixed to the link.
+                let centre = zero[link].translation;
+                let moves = |joint: &usize| robot.joints[*joint].motion != Motion::Fixed;
+                let whole = robot.chain(link).find(moves).unwrap_or(link);
+                named.centres.push((name, centre.vector));
+                named.carried.insert(whole, (*carrier, centre.inverse() * zero[whole]));
+                continue;
+            }
+            let own = machine.rig.skeleton.joints.iter().map(|joint| joint.name.as_str());
+            known(&place, name, "pose or joint of the pack", &own.chain(last.keys().copied()).collect::<Vec<_>>())?;
+            // The link that a joint moves means the joint too.
+            let moved = links.iter().position(|link| link == what);
+            let joint = known(&place, what, "joint of the description", &names(|joint| joint.name.as_str()));
+            named.joints.insert(name, joint.or_else(|error| moved.ok_or(error))?);
+        }
+        Ok(named)
     }
 }
 
