@@ -73,7 +73,9 @@ pub enum QuantiseError {
     #[error(
         "row {row} of the layer {layer} has a weight or bias of size {found:.1}, too large for the fixed-point result"
     )]
-    #[diagnostic(help("train with more weight decay, or keep the f32 pack"))]
+    #[diagnostic(help(
+        "train a translator with --form per-joint, a network with more weight decay, or keep the f32 pack"
+    ))]
     Range {
         /// Name of its tensor.
         layer: &'static str,
