@@ -256,6 +256,9 @@ fn a_mood_dial_gives_the_mood_that_it_is_asked_for() {
         "mood.kin",
     ];
     kinesic(at, &train).unwrap();
+    // At the robot's rate.
+    let mood = PackFile::read(&at.join("mood.kin")).unwrap();
+    assert_eq!(mood.pack().unwrap().metadata().frame_rate, 50.0);
     // Played, limited, written as servo numbers, and read again from the file.
     let asked: Vec<f64> = (0..=20).map(|step| f64::from(step) / 20.0).collect();
     let read = |mood: &f64| {

@@ -3,7 +3,7 @@
 //! | file | holds |
 //! |---|---|
 //! | `mod` | [`Look`]: links in a tree, forward kinematics |
-//! | `plain` | the links of a pack alone: a bone between joints, a drum about every axis |
+//! | `plain` | the links of a pack alone: a bone between joints, a cylinder about every axis |
 //! | `described` | the links of a description: its shapes, followers and what stands still among them |
 //! | `solid` | triangles |
 //! | `mesh` | triangles from files |

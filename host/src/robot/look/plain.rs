@@ -10,7 +10,7 @@ use crate::robot::Machine;
 const SHORTEST: f64 = 1e-6;
 
 impl Look {
-    /// A bone from every joint to each that it carries, a drum about every hinge, a block on every slider, and a foot.
+    /// A bone from every joint to each that it carries, a cylinder about every hinge, a block on every slider, and a foot.
     pub fn of_machine(machine: &Machine) -> Self {
         Self::plain(machine).standing()
     }

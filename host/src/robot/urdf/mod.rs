@@ -145,10 +145,19 @@ fn child<'a, 'b>(node: Node<'a, 'b>, name: &str) -> Option<Node<'a, 'b>> {
 
 /// Name of a link and its centre of mass. One that is not given, or not in numbers, moves nothing.
 fn centre<'a>(link: Node<'a, '_>) -> Option<(&'a str, Vector3<f64>)> {
-    let at = child(child(link, "inertial")?, "origin").and_then(|origin| origin.attribute("xyz")).unwrap_or("0 0 0");
-    let at: Vec<f64> = at.split_whitespace().map(|x| x.parse().ok()).collect::<Option<_>>()?;
-    let at = <[f64; 3]>::try_from(at).ok().filter(|at| at.iter().all(|x| x.abs() < 1e6))?;
-    Some((link.attribute("name")?, at.into()))
+    let origin = child(child(link, "inertial")?, "origin");
+    let at = origin.map_or(Ok(None), |origin| three(origin, "xyz")).ok()?.unwrap_or_default();
+    Some((link.attribute("name")?, at))
+}
+
+/// Three numbers of an attribute; what is wrong with it.
+fn three(node: Node, name: &str) -> Result<Option<Vector3<f64>>, String> {
+    let Some(text) = node.attribute(name) else { return Ok(None) };
+    let all: Option<Vec<f64>> = text.split_whitespace().map(|x| x.parse().ok()).collect();
+    match all.as_deref() {
+        Some(&[x, y, z]) if [x, y, z].iter().all(|x| x.abs() < 1e6) => Ok(Some(Vector3::new(x, y, z))),
+        _ => Err(format!("<{} {name}=\"{text}\">: expected three numbers below a million", node.tag_name().name())),
+    }
 }
 
 /// A joint but for its place in the tree.
@@ -167,16 +176,9 @@ fn read(node: Node, line: u32) -> Result<RobotJoint, RobotError> {
             }
         }
     };
-    let three = |tag: &str, attribute: &str| -> Result<Option<Vector3<f64>>, RobotError> {
-        let Some(text) = child(node, tag).and_then(|node| node.attribute(attribute)) else { return Ok(None) };
-        let numbers: Option<Vec<f64>> = text.split_whitespace().map(|x| x.parse().ok()).collect();
-        match numbers.as_deref() {
-            Some(&[x, y, z]) if [x, y, z].iter().all(|x| x.abs() < 1e6) => Ok(Some(Vector3::new(x, y, z))),
-            _ => {
-                let what = format!("<{tag} {attribute}=\"{text}\">: expected three numbers");
-                Err(RobotError::new(&place, what, "as in \"0 0 1\""))
-            }
-        }
+    let three = |tag: &str, attribute: &str| {
+        let found = child(node, tag).map_or(Ok(None), |node| three(node, attribute));
+        found.map_err(|what| RobotError::new(&place, what, "as in \"0 0 1\""))
     };
     let motion = match node.attribute("type") {
         Some("revolute") => Motion::Revolute,

@@ -6,7 +6,7 @@ use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use roxmltree::Node;
 
 use super::super::shape::{Form, Shape};
-use super::child;
+use super::{child, three};
 
 type Colours<'a> = HashMap<&'a str, [f64; 3]>;
 
@@ -71,18 +71,6 @@ fn length(node: Node, name: &str) -> Result<f64, String> {
     let text = node.attribute(name).unwrap_or_default();
     let length = text.trim().parse().ok().filter(|x| (0.0..1e6).contains(x) && *x > 0.0);
     length.ok_or_else(|| format!("<{} {name}=\"{text}\">: expected a length over 0, as 0.05", node.tag_name().name()))
-}
-
-fn three(node: Node, name: &str) -> Result<Option<Vector3<f64>>, String> {
-    let Some(text) = node.attribute(name) else { return Ok(None) };
-    let all: Option<Vec<f64>> = text.split_whitespace().map(|x| x.parse().ok()).collect();
-    match all.as_deref() {
-        Some(&[x, y, z]) if [x, y, z].iter().all(|x| x.abs() < 1e6) => Ok(Some(Vector3::new(x, y, z))),
-        _ => Err(format!(
-            "<{} {name}=\"{text}\">: expected three numbers below a million, as \"0 0 1\"",
-            node.tag_name().name()
-        )),
-    }
 }
 
 /// A material's name and colour.
