@@ -34,9 +34,7 @@ pub enum RetargetError {
 /// of the rig takes the direction that the clip's joints have, found through the two joint maps. The root's path is that of the pelvis,
 /// scaled by the length of the legs.
 pub fn retarget(clip: &Clip, map: &JointMap, rig: &Rig) -> Result<Clip, RetargetError> {
-    let scale = leg_length(&rig.skeleton, &rig.map) / leg_length(&clip.skeleton, map);
-    // Legs that differ by less than a tenth of a millimetre in a metre are the same legs.
-    let scale = if scale.is_finite() && (scale - 1.0).abs() > 1e-4 { scale } else { 1.0 };
+    let scale = leg_scale(clip, map, rig);
     let pelvis = map.joint(Canonical::Pelvis).filter(|&p| p > 0 && rig.map.joint(Canonical::Pelvis) == Some(0));
     let root = match pelvis {
         Some(pelvis) => (0..clip.frames()).map(|f| clip.positions(f)[pelvis] * scale).collect(),
@@ -55,7 +53,8 @@ pub fn retarget(clip: &Clip, map: &JointMap, rig: &Rig) -> Result<Clip, Retarget
     Ok(Clip { skeleton: rig.skeleton.clone(), frame_time: clip.frame_time, root, rotations, coordinates: None, notes })
 }
 
-fn same_joints(a: &Skeleton, b: &Skeleton) -> bool {
+/// Whether two skeletons have the same joints: names and parents.
+pub(crate) fn same_joints(a: &Skeleton, b: &Skeleton) -> bool {
     a.joints.len() == b.joints.len()
         && a.joints.iter().zip(&b.joints).all(|(a, b)| a.name == b.name && a.parent == b.parent)
 }
@@ -109,6 +108,13 @@ fn nearest(
         true => UnitQuaternion::identity(),
         false => turn(started) * above,
     }
+}
+
+/// Length of the rig's legs over that of the clip's: the root's path is so many times as long.
+pub(crate) fn leg_scale(clip: &Clip, map: &JointMap, rig: &Rig) -> f64 {
+    let scale = leg_length(&rig.skeleton, &rig.map) / leg_length(&clip.skeleton, map);
+    // Legs that differ by less than a tenth of a millimetre in a metre are the same legs.
+    if scale.is_finite() && (scale - 1.0).abs() > 1e-4 { scale } else { 1.0 }
 }
 
 /// Thighs and shins of both legs, m.

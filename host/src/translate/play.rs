@@ -44,6 +44,20 @@ impl Default for Settings {
 
 /// Translates a clip on the pack's rig and at its frame rate, from the state that holding the first frame leads to.
 pub fn play(pack: &Pack, rig: &Rig, source: &Clip, settings: &Settings) -> Result<Clip, LoadError> {
+    let (styled, clock) = play_on_clock(pack, rig, source, settings)?;
+    Ok(match settings.timing {
+        Timing::Keep => styled,
+        Timing::Learned => retime(rig, &styled, &clock),
+    })
+}
+
+/// The clip frame for frame, and when each frame is due by the learned timing, in frames, rising.
+pub fn play_on_clock(
+    pack: &Pack,
+    rig: &Rig,
+    source: &Clip,
+    settings: &Settings,
+) -> Result<(Clip, Vec<f64>), LoadError> {
     let translator = HostTranslator::load(pack)?;
     let mut state = Box::new(TranslatorState::new());
     state.controls = settings.controls;
@@ -59,14 +73,11 @@ pub fn play(pack: &Pack, rig: &Rig, source: &Clip, settings: &Settings) -> Resul
         // Strength acts on the clock as on the pose (up to `TIMING_STRENGTH`): 0 keeps it.
         now += f64::from(timing.duration).powf(f64::from(strength));
     });
-    Ok(match settings.timing {
-        Timing::Keep => styled,
-        Timing::Learned => retime(rig, &styled, &clock),
-    })
+    Ok((styled, clock))
 }
 
 /// The motion at whole frames of `clock`, which says when each frame is due, in frames, rising.
-fn retime(rig: &Rig, clip: &Clip, clock: &[f64]) -> Clip {
+pub fn retime(rig: &Rig, clip: &Clip, clock: &[f64]) -> Clip {
     let Some(end) = clock.last().filter(|_| clip.frames() > 1) else { return clip.clone() };
     let mut next = 1;
     let due = (0..=end.floor() as usize).map(|frame| {

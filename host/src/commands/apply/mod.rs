@@ -1,5 +1,7 @@
 //! `kinesic apply`.
 
+mod land;
+
 use std::path::PathBuf;
 
 use clap::ValueEnum;
@@ -10,7 +12,6 @@ use kinesic_host::clip::{Clip, Memory};
 use kinesic_host::limit::{self, Clamps};
 use kinesic_host::pack::PackFile;
 use kinesic_host::prepare::Source;
-use kinesic_host::quality::{self, Quality};
 use kinesic_host::rig::{MAX_JOINTS, MAX_ROWS, Rig};
 use kinesic_host::robot::Machine;
 use kinesic_host::translate::{self, TIMING_STRENGTH, Timing};
@@ -18,6 +19,7 @@ use kinesic_host::{components, engines};
 use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
 
+use self::land::{Feet, Judged, On, Place};
 use super::clips::Reading;
 use super::mask;
 use super::output::{check_motion, print_clamps, print_json, spinner, write_motion};
@@ -26,15 +28,20 @@ use super::output::{check_motion, print_clamps, print_json, spinner, write_motio
 ///
 /// For packs of translators and of style components.
 ///
-/// The clip may have another skeleton and frame rate than the pack: it is put on the pack's skeleton, and the result is
-/// written on that skeleton, at the pack's frame rate: BVH in centimetres, glTF in metres. A robot's motion is a file of its joints, and so
-/// is the result: what its servos take. Where the pack holds limits, they are the last stage, as on the device.
+/// The clip may have another skeleton and frame rate than the pack. The engine plays it on the pack's skeleton, as on the device. What
+/// changed is carried to the clip's own skeleton: its joints, names, rest pose, fingers and rate stay. Feet are held where they stand in the
+/// clip (--feet). With --on pack the result is what the device makes, on the pack's skeleton and at its rate. BVH is in centimetres, glTF in
+/// metres.
+///
+/// A robot's motion is a file of its joints, and so is the result: what its servos take. Where the pack holds limits, they are the
+/// last stage, as on the device, and the result is on the pack's skeleton.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
   kinesic apply angry.kin walk.bvh --out angry-walk.bvh
   kinesic apply angry.kin walk.bvh --out a-little.bvh --strength 0.4
   kinesic apply angry.kin walk.bvh --out angry-walk.glb
+  kinesic apply angry.kin walk.bvh --out as-on-the-device.bvh --on pack
   kinesic apply angry.kin walk.bvh --out arms-only.bvh --mask '*=0,LeftArm+=1,r_shoulder+=1'
   kinesic apply child.kin jump.csv --out child-jump.bvh --timing learned
   kinesic apply components.kin --stored --out stored.bvh
@@ -63,6 +70,12 @@ pub struct Args {
     /// Keep the clip's timing, or stretch and squeeze it as learned
     #[arg(long, value_enum, default_value_t = Clock::Keep)]
     timing: Clock,
+    /// Whose skeleton the result has [default: the clip's; the pack's where it holds limits, and of a robot]
+    #[arg(long, value_enum, value_name = "SKELETON")]
+    on: Option<On>,
+    /// Hold feet where they stand in the clip, or leave them as they come [default: lock; on the pack's skeleton free, as on the device]
+    #[arg(long, value_enum)]
+    feet: Option<Feet>,
     /// Print the results as one JSON object
     #[arg(long)]
     json: bool,
@@ -83,11 +96,8 @@ struct Summary {
     out: String,
     frames: usize,
     frame_rate: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    source: Option<Quality>,
-    /// A robot has no feet.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    styled: Option<Quality>,
+    #[serde(flatten)]
+    quality: Judged,
     /// What the pack's limits did.
     #[serde(skip_serializing_if = "Option::is_none")]
     limits: Option<Clamps>,
@@ -122,20 +132,19 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let source = args.clip.as_ref().map(|path| Source::read(path, &options)).transpose().into_diagnostic()?;
     let clip = source.as_ref().map(|source| source.on_rig(&rig, fps)).transpose().into_diagnostic()?;
     let played = play(args, &pack, &rig, clip.as_ref(), controls)?;
-    let (styled, limits) = match limit::play(&pack, &rig, &played.clip).into_diagnostic()? {
+    let place = Place::choose(args.on, args.feet, &pack, source.as_ref())?;
+    let (styled, quality) = match &clip {
+        Some(clip) if machine.is_none() => place.land(source.as_ref(), &rig, clip, &played),
+        _ => (played.timed(&rig), land::alone(&played.clip, machine.is_none().then_some(&rig.map))),
+    };
+    let (styled, limits) = match limit::play(&pack, &rig, &styled).into_diagnostic()? {
         Some((clip, clamps)) => (clip, Some(clamps)),
-        None => (played.clip, None),
+        None => (styled, None),
     };
     write_motion(&args.out, &styled, machine.as_ref(), source.as_ref().and_then(|source| source.moves.as_ref()))?;
     bar.finish_and_clear();
-    let summary = Summary {
-        out: args.out.display().to_string(),
-        frames: styled.frames(),
-        frame_rate: fps,
-        source: clip.as_ref().filter(|_| machine.is_none()).map(|clip| quality::measure(clip, &rig.map)),
-        styled: machine.is_none().then(|| quality::measure(&styled, &rig.map)),
-        limits,
-    };
+    let frame_rate = 1.0 / styled.frame_time;
+    let summary = Summary { out: args.out.display().to_string(), frames: styled.frames(), frame_rate, quality, limits };
     if args.json {
         return print_json(&summary);
     }
@@ -143,22 +152,24 @@ pub fn run(args: &Args) -> miette::Result<()> {
     if !(low..=high).contains(&args.strength) {
         println!("note: strength {} is outside the plausible range of this pack, {low} to {high}", args.strength);
     }
-    if summary.styled.is_some() {
-        println!("            foot slide, cm/s   jerk, m/s^3");
-    }
-    let rows = summary.source.iter().map(|q| ("source", q)).chain(summary.styled.iter().map(|q| ("styled", q)));
-    for (name, q) in rows {
-        println!("{name:<10} {:>17.1} {:>13.1}", q.foot_slide_cm_s, q.jerk_m_s3);
-    }
+    summary.quality.print();
     summary.limits.iter().for_each(print_clamps);
-    println!("{}: {} frames at {fps} a second", summary.out, summary.frames);
+    println!("{}: {} frames at {frame_rate} a second", summary.out, summary.frames);
     Ok(())
 }
 
-/// What a pack made, and the strengths that it calls plausible.
+/// What a pack made on its rig, frame for frame; when each frame is due, in frames, if the pack decides; and the strengths that it calls
+/// plausible.
 struct Played {
     clip: Clip,
+    clock: Option<Vec<f64>>,
     plausible: [f32; 2],
+}
+
+impl Played {
+    fn timed(&self, rig: &Rig) -> Clip {
+        self.clock.as_ref().map_or_else(|| self.clip.clone(), |clock| translate::retime(rig, &self.clip, clock))
+    }
 }
 
 /// Refuses a clip that the pack's clock may make too long. Each frame lasts `2^log2` frames, between the ends of the clock's range, to
@@ -190,15 +201,15 @@ fn play(
         (Some(("translator", player)), Some(clip)) if learned => {
             check_length(args, pack, clip)?;
             let settings = translate::Settings { controls, timing: Timing::Learned };
-            let clip = translate::play(pack, rig, clip, &settings).into_diagnostic()?;
-            return Ok(Played { clip, plausible: player.plausible });
+            let (clip, clock) = translate::play_on_clock(pack, rig, clip, &settings).into_diagnostic()?;
+            return Ok(Played { clip, clock: Some(clock), plausible: player.plausible });
         }
         (Some((engine, _)), Some(_)) if learned => {
             return Err(miette!("--timing learned: the {engine} of this pack has no timing, only a translator has"));
         }
         (Some((_, player)), Some(clip)) => {
             let clip = (player.play)(pack, rig, clip, controls).into_diagnostic()?;
-            return Ok(Played { clip, plausible: player.plausible });
+            return Ok(Played { clip, clock: None, plausible: player.plausible });
         }
         _ => {}
     }
@@ -210,7 +221,7 @@ fn play(
         if clip.frames() == 0 {
             return Err(miette!(help = "name a clip to play", "the pack stores no motion"));
         }
-        return Ok(Played { clip, plausible: meta.strength });
+        return Ok(Played { clip, clock: None, plausible: meta.strength });
     }
     let (found, help) = match args.stored {
         true => ("--stored: the pack holds no style components, which alone store a motion", "name a clip to play"),
