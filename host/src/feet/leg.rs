@@ -107,7 +107,13 @@ mod tests {
         let map = JointMap::choose(&clip.skeleton, None).unwrap().unwrap();
         let foot = Foot::of(&clip.skeleton, &map)[0];
         let mut pose = clip.pose(3).to_vec();
-        reach(&clip.skeleton, (&foot, &knee_axis(&clip, &foot)), &clip.root[3], &mut pose, Vector3::new(0.0, -3.0, 0.0));
+        reach(
+            &clip.skeleton,
+            (&foot, &knee_axis(&clip, &foot)),
+            &clip.root[3],
+            &mut pose,
+            Vector3::new(0.0, -3.0, 0.0),
+        );
         let at = clip.skeleton.pose_positions(&clip.root[3], &pose);
         let [hip, _, ankle] = foot.leg.map(|joint| at[joint]);
         assert!((ankle - hip).norm() <= 0.83 + 1e-9 && (ankle - hip).norm() > 0.82);

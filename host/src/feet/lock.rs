@@ -12,6 +12,8 @@ const BLEND: f64 = 0.2;
 const SMOOTH: f64 = 0.05;
 /// The ends of a contact count less over this time, s: there the foot already moves.
 const RAMP: f64 = 0.06;
+/// Longest time for which a styled foot is held before or after the contact of the source, s.
+const GOES_ON: f64 = 0.15;
 /// Longest flight between two contacts over which the correction of the travel is carried on, s.
 const FLIGHT: f64 = 0.4;
 /// Part of its length to which a leg that stands is stretched at most.
@@ -37,8 +39,10 @@ pub fn lock(source: &Clip, styled: &Clip, map: &JointMap) -> Clip {
         *root += way;
     }
     let to: Vec<Vec<Vector3<f64>>> = feet.iter().map(|foot| foot.path(&out)).collect();
-    let mut ways: Vec<Vec<Vector3<f64>>> =
-        from.iter().zip(&to).zip(&stands).map(|((from, to), stands)| holds(from, to, stands, fps)).collect();
+    let hold = |((foot, from), (to, stands)): ((&Foot, &Vec<_>), (&Vec<_>, &Vec<_>))| {
+        holds(from, to, stands, &Foot::stands(to, fps, foot.size(&source.skeleton)), fps)
+    };
+    let mut ways: Vec<Vec<Vector3<f64>>> = feet.iter().zip(&from).zip(to.iter().zip(&stands)).map(hold).collect();
     let drops = drops(&out, &feet, &ways, &stands, fps);
     for (frame, drop) in drops.iter().enumerate() {
         out.root[frame].y -= drop;
@@ -96,8 +100,8 @@ fn travel(from: &[Vec<Vector3<f64>>], to: &[Vec<Vector3<f64>>], stands: &[Vec<bo
     walked.collect()
 }
 
-/// How far a foot must be moved to stand where it should, m, per frame.
-fn holds(from: &[Vector3<f64>], to: &[Vector3<f64>], stands: &[bool], fps: f64) -> Vec<Vector3<f64>> {
+/// How far a foot must be moved to stand where it should, m, per frame. `also` says when the styled foot stands by itself.
+fn holds(from: &[Vector3<f64>], to: &[Vector3<f64>], stands: &[bool], also: &[bool], fps: f64) -> Vec<Vector3<f64>> {
     let mut ways = vec![Vector3::zeros(); from.len()];
     let contacts = runs(stands);
     for run in &contacts {
@@ -107,6 +111,7 @@ fn holds(from: &[Vector3<f64>], to: &[Vector3<f64>], stands: &[bool], fps: f64) 
             ways[frame] = from[frame] + Vector3::new(mean.x, 0.0, mean.z) - to[frame];
         }
     }
+    let stands = goes_on(&mut ways, to, stands, also, fps);
     let in_air: Vec<bool> = stands.iter().map(|stands| !stands).collect();
     for gap in runs(&in_air) {
         let blend = (BLEND * fps).min((gap.len() + 1) as f64);
@@ -122,6 +127,24 @@ fn holds(from: &[Vector3<f64>], to: &[Vector3<f64>], stands: &[bool], fps: f64) 
         way.y += (from.y.min(floor) - to.y - way.y).max(0.0);
     }
     ways
+}
+
+/// A styled foot that stands before or after a contact of the source, and without a break, stands on the same spot for that time too. Says
+/// when a foot is held.
+fn goes_on(ways: &mut [Vector3<f64>], to: &[Vector3<f64>], stands: &[bool], also: &[bool], fps: f64) -> Vec<bool> {
+    let (mut held, most) = (stands.to_vec(), (GOES_ON * fps) as usize);
+    let mut hold = |frame: usize, at: usize| {
+        let spot = to[at] + ways[at];
+        ways[frame] = Vector3::new(spot.x - to[frame].x, ways[at].y, spot.z - to[frame].z);
+        held[frame] = true;
+    };
+    for run in runs(stands) {
+        let before = (0..run.start).rev().take(most).take_while(|frame| also[*frame] && !stands[*frame]);
+        before.for_each(|frame| hold(frame, run.start));
+        let after = (run.end..to.len()).take(most).take_while(|frame| also[*frame] && !stands[*frame]);
+        after.for_each(|frame| hold(frame, run.end - 1));
+    }
+    held
 }
 
 /// From 1 at 0 to 0 at 1, smooth at both ends.
