@@ -3,6 +3,7 @@
 //! | file | holds |
 //! |---|---|
 //! | `correspond` | which styled moment belongs to which source frame |
+//! | `cyclic` | whether a motion is a walk, which is aligned in step |
 //! | `dataset` | training sequences: source frames and wanted output |
 //! | `dynamics` | candidate dynamics: banks of poles, simulation |
 //! | [`identify`] | dynamics from data: impulse response, truncation, modal form |
@@ -14,6 +15,7 @@
 mod baseline;
 mod candidate;
 mod correspond;
+mod cyclic;
 mod dataset;
 mod dynamics;
 mod evaluate;
@@ -28,7 +30,7 @@ mod strength;
 mod train;
 
 pub use candidate::{AFFINE, Candidate};
-pub use correspond::Alignment;
+pub use correspond::{Alignment, OPEN};
 pub use dynamics::{Dynamics, Poles};
 pub use evaluate::{Angles, Errors, EvaluateError, NamedPair, PairReport, Report, evaluate};
 pub use model::{BankModel, TimingModel, TranslatorModel};
