@@ -31,6 +31,7 @@ pub mod report;
 pub mod retarget;
 pub mod rig;
 pub mod robot;
+pub mod sheet;
 pub mod step_cache;
 pub mod translate;
 mod vector;

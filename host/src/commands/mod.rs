@@ -27,6 +27,7 @@ mod precision;
 mod quantize;
 mod robot;
 mod score;
+mod sheet;
 mod suggest;
 mod synth;
 mod train;
@@ -74,6 +75,7 @@ enum Command {
     View(view::Args),
     Quantize(quantize::Args),
     Score(score::Args),
+    Sheet(sheet::Args),
     #[command(subcommand)]
     Robot(robot::Action),
     Limits(limits::Args),
@@ -114,6 +116,7 @@ fn dispatch(cli: Cli) -> miette::Result<()> {
         Command::View(args) => view::run(&args),
         Command::Quantize(args) => quantize::run(&args),
         Command::Score(args) => score::run(&args),
+        Command::Sheet(args) => sheet::run(&args),
         Command::Robot(action) => robot::run(&action),
         Command::Limits(args) => limits::run(&args),
         Command::Export(args) => export::run(&args),

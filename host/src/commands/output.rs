@@ -77,7 +77,8 @@ pub fn check_motion(path: &Path, machine: bool) -> miette::Result<()> {
     check_folder(path)
 }
 
-fn check_folder(path: &Path) -> miette::Result<()> {
+/// Refuses a path whose folder is not there.
+pub fn check_folder(path: &Path) -> miette::Result<()> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if !folder.is_dir() {
         return Err(miette!(
