@@ -8,6 +8,7 @@ pub mod align;
 pub mod checkpoint;
 pub mod clip;
 pub mod components;
+pub mod edit;
 pub mod embed;
 pub mod emotion;
 pub mod engines;

@@ -5,11 +5,13 @@ mod print;
 
 mod angles;
 mod apply;
+mod batch;
 mod blend;
 mod clips;
 mod completions;
 mod decouple;
 mod demo;
+mod edit;
 mod eval;
 mod export;
 mod expression;
@@ -79,6 +81,7 @@ enum Command {
     #[command(subcommand)]
     Robot(robot::Action),
     Limits(limits::Args),
+    Edit(edit::Args),
     Export(export::Args),
     Completions(completions::Args),
     Face(face::Args),
@@ -91,6 +94,7 @@ enum Command {
 pub fn run() -> miette::Result<()> {
     let matches = Cli::command().get_matches();
     let cli = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
+    guard::set_overwrites(cli.overwrite);
     if !cli.overwrite {
         guard::check(&matches)?;
     }
@@ -119,6 +123,7 @@ fn dispatch(cli: Cli) -> miette::Result<()> {
         Command::Sheet(args) => sheet::run(&args),
         Command::Robot(action) => robot::run(&action),
         Command::Limits(args) => limits::run(&args),
+        Command::Edit(args) => edit::run(&args),
         Command::Export(args) => export::run(&args),
         Command::Completions(args) => completions::run(&args),
         Command::Face(args) => face::run(&args),

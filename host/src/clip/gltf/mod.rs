@@ -7,6 +7,7 @@
 //! | animation | one key a frame at `frame / rate` s, from 0 to [`Clip::duration`], linear; a rotation for every joint |
 //! | root motion | the translation of node 0, in the world; nothing else moves |
 //! | quaternions | `x y z w`, of the two signs the one nearer to the frame before |
+//! | names | scene and animation: the file's; nodes: the joints' |
 //! | body | one octahedron a bone, all of one mesh, skinned to the joints (`bones`) |
 //! | `asset.extras` | `frame_rate`, `frames`, `duration_s`, `unit`, `root_motion` |
 //!
@@ -25,15 +26,23 @@ use serde_json::{Value, json};
 use super::Clip;
 use super::bvh::write::{WriteError, check};
 
+/// Name of a motion that is not written to a file.
+const UNNAMED: &str = "motion";
+
 const FLOAT: u32 = 5126;
 const U16: u32 = 5123;
 const VERTICES: u32 = 34_962;
 const INDICES: u32 = 34_963;
 
 impl Clip {
-    /// A binary glTF file. Refuses what the BVH writer refuses.
+    /// A binary glTF file whose motion has no name of its own. Refuses what the BVH writer refuses.
     pub fn to_glb(&self) -> Result<Vec<u8>, WriteError> {
-        let (document, buffer) = document(self, None)?;
+        self.to_glb_named(UNNAMED)
+    }
+
+    /// As [`Clip::to_glb`]; scene and animation have the name.
+    pub fn to_glb_named(&self, name: &str) -> Result<Vec<u8>, WriteError> {
+        let (document, buffer) = document(self, name, None)?;
         let mut text = document.to_string().into_bytes();
         text.resize(text.len().next_multiple_of(4), b' ');
         let length = 12 + 8 + text.len() + 8 + buffer.len();
@@ -52,9 +61,14 @@ impl Clip {
 
     /// A glTF file as text, with its numbers in it.
     pub fn to_gltf(&self) -> Result<String, WriteError> {
-        let (_, buffer) = document(self, None)?;
+        self.to_gltf_named(UNNAMED)
+    }
+
+    /// As [`Clip::to_gltf`]; scene and animation have the name.
+    pub fn to_gltf_named(&self, name: &str) -> Result<String, WriteError> {
+        let (_, buffer) = document(self, name, None)?;
         let uri = format!("data:application/octet-stream;base64,{}", BASE64_STANDARD.encode(&buffer));
-        Ok(document(self, Some(uri))?.0.to_string())
+        Ok(document(self, name, Some(uri))?.0.to_string())
     }
 }
 
@@ -103,7 +117,7 @@ impl Buffer {
     }
 }
 
-fn document(clip: &Clip, uri: Option<String>) -> Result<(Value, Vec<u8>), WriteError> {
+fn document(clip: &Clip, name: &str, uri: Option<String>) -> Result<(Value, Vec<u8>), WriteError> {
     check(clip)?;
     let joints = clip.skeleton.len();
     let mut smooth = clip.clone();
@@ -138,9 +152,9 @@ fn document(clip: &Clip, uri: Option<String>) -> Result<(Value, Vec<u8>), WriteE
             "root_motion": "translation of node 0",
         }},
         "scene": 0,
-        "scenes": [{"nodes": [0, joints]}],
+        "scenes": [{"name": name, "nodes": [0, joints]}],
         "nodes": nodes,
-        "animations": [{"name": "motion", "channels": channels, "samplers": samplers}],
+        "animations": [{"name": name, "channels": channels, "samplers": samplers}],
         "meshes": [mesh],
         "skins": [skin],
         "materials": [{"name": "bone", "pbrMetallicRoughness": {"baseColorFactor": [0.25, 0.45, 0.75, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.8}}],
