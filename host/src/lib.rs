@@ -34,6 +34,7 @@ pub mod rig;
 pub mod robot;
 pub mod sheet;
 pub mod step_cache;
+pub mod strength;
 pub mod translate;
 mod vector;
 pub mod view;
