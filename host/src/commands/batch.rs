@@ -102,6 +102,11 @@ impl Batch {
         Ok(Self { jobs, folder: Some(out.to_owned()) })
     }
 
+    /// Whether results go to a folder.
+    pub fn is_folder(&self) -> bool {
+        self.folder.is_some()
+    }
+
     /// Makes every file. What fails is said, and the rest is made; at the end a failure of one is a failure of the command. `print` shows one
     /// result; with `json` there is one object of them all.
     pub fn run<R: Serialize>(
