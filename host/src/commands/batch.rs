@@ -45,7 +45,9 @@ impl Batch {
         let paths = paths_of(clips, &extensions)?;
         let slash = out.as_os_str().as_encoded_bytes().ends_with(b"/");
         let [clip] = &paths[..] else { return Self::folder(paths, out, format, machine) };
-        if several || slash || out.is_dir() {
+        // A folder with the name of a motion is more likely a slip.
+        let named = Format::of(out).is_some() || is_moves(out);
+        if several || slash || out.is_dir() && !named {
             return Self::folder(paths, out, format, machine);
         }
         if let Some(format) = format {

@@ -39,10 +39,10 @@ pub struct Args {
     #[arg(long, value_parser = FORMATS)]
     format: Option<String>,
     /// First frame: 1.2s or 36f
-    #[arg(long, value_name = "TIME")]
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
     from: Option<Time>,
     /// Last frame
-    #[arg(long, value_name = "TIME")]
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
     to: Option<Time>,
     /// Take out what is faster: a movement of this period keeps half its size, one of twice the period 84 %, one of half the period 6 %
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]

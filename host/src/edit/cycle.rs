@@ -53,7 +53,7 @@ pub fn close(clip: &Clip, cycle: &Cycle) -> Result<(Clip, Seam), EditError> {
     let least = least.max(before).max(2);
     let most = most.min(last.saturating_sub(before));
     if least > most {
-        let [length, needed] = [least, least + before].map(|frames| frames as f64 * clip.frame_time);
+        let [length, needed] = [least, least.saturating_add(before)].map(|frames| frames as f64 * clip.frame_time);
         return Err(EditError::Short { lasts: clip.duration(), needed, length, blend: cycle.blend });
     }
     let looks = Looks::of(clip);
