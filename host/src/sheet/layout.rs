@@ -60,8 +60,7 @@ impl Cell {
         for figure in figures {
             let [mut half, mut low, mut high] = found.unwrap_or([0.0, 0.0, 0.0f64]);
             let ends = figure.strokes.iter().flat_map(|(from, to, _)| [*from, *to]);
-            let head = figure.head.into_iter().map(|(middle, radius)| (middle, radius));
-            for (point, radius) in ends.map(|end| (end, 0.0)).chain(head) {
+            for (point, radius) in ends.map(|end| (end, 0.0)).chain(figure.head) {
                 let seen = view.project(&point);
                 half = f64::max(half, seen.x.abs() + radius);
                 low = f64::min(low, seen.y - radius);

@@ -157,7 +157,11 @@ pub fn run(args: &Args) -> miette::Result<()> {
     if args.stored {
         check_motion(&args.out, stage.machine.is_some())?;
         let summary = stage.play(None, &args.out)?;
-        return if args.json { print_json(&summary) } else { Ok(summary.print()) };
+        if args.json {
+            return print_json(&summary);
+        }
+        summary.print();
+        return Ok(());
     }
     let batch = Batch::new(&args.clips, &args.out, args.format.as_deref(), stage.machine.is_some())?;
     let print = |_: &Job, summary: &Summary| if batch.is_folder() { summary.line() } else { summary.print() };
