@@ -142,7 +142,9 @@ mod tests {
         let mut reader = png::Decoder::new(Cursor::new(&bytes)).read_info().unwrap();
         assert_eq!(reader.info().animation_control().unwrap().num_frames as usize, film.frames());
         let mut buffer = vec![0; reader.output_buffer_size().unwrap()];
-        (0..film.frames()).for_each(|_| drop(reader.next_frame(&mut buffer).unwrap()));
+        for _ in 0..film.frames() {
+            assert_eq!(reader.next_frame(&mut buffer).unwrap().width, size.width);
+        }
     }
 
     #[test]
