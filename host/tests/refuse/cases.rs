@@ -144,7 +144,7 @@ pub const CASES: &[(&str, &str)] = &[
     ),
     ("apply weary.kin walk.bvh --out o.bvh --strength 1@0s,0.5", "key 2, '0.5'"),
     ("apply weary.kin walk.bvh --out o.bvh --strength 1@1s,0@1s", "times that rise"),
-    ("apply weary.kin walk.bvh --out o.bvh --strength @walk.bvh", "walk.bvh: line 1"),
+    ("apply weary.kin walk.bvh --out o.bvh --strength @walk.bvh", "walk.bvh: line 2"),
     ("apply weary.kin walk.bvh --out o.bvh --strength @hollow", "hollow: cannot be read"),
     ("apply weary.kin walk.bvh --out o.bvh --timing learned --strength 0@0s,9@1s", "choose a smaller strength"),
     ("apply weary.kin walk.bvh weary.bvh --out o.bvh", "expected a folder"),

@@ -21,6 +21,7 @@ pub(super) use read::read;
 
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
+use nalgebra::{UnitQuaternion, Vector4};
 use serde_json::{Value, json};
 
 use super::Clip;
@@ -117,6 +118,11 @@ impl Buffer {
     }
 }
 
+/// A quaternion of length 1, as glTF asks for: what the device computes in singles is a millionth off.
+fn unit(turn: &UnitQuaternion<f64>) -> Vector4<f64> {
+    turn.coords.try_normalize(1e-9).unwrap_or(turn.coords)
+}
+
 fn document(clip: &Clip, name: &str, uri: Option<String>) -> Result<(Value, Vec<u8>), WriteError> {
     check(clip)?;
     let joints = clip.skeleton.len();
@@ -131,7 +137,7 @@ fn document(clip: &Clip, name: &str, uri: Option<String>) -> Result<(Value, Vec<
     let mut channels = vec![json!({"sampler": 0, "target": {"node": 0, "path": "translation"}})];
     for joint in 0..joints {
         let rotations: Vec<f32> =
-            (0..clip.frames()).flat_map(|frame| smooth.pose(frame)[joint].coords.map(|v| v as f32).data.0[0]).collect();
+            (0..clip.frames()).flat_map(|frame| unit(&smooth.pose(frame)[joint]).map(|v| v as f32).data.0[0]).collect();
         let output = buffer.floats(("VEC4", 4), &rotations, None, false);
         channels.push(json!({"sampler": samplers.len(), "target": {"node": joint, "path": "rotation"}}));
         samplers.push(json!({"input": times, "output": output, "interpolation": "LINEAR"}));
