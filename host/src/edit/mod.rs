@@ -3,7 +3,7 @@
 //! | file | holds |
 //! |---|---|
 //! | `span` | [`Time`]: seconds or a frame; [`trim`] |
-//! | `smooth` | [`smooth`]: a low-pass without delay, rotations on the sphere |
+//! | `smooth` | [`smooth()`]: a low-pass without delay, rotations on the sphere |
 //! | `seam` | where a clip comes back to what it did before |
 //! | `cycle` | [`close`]: a clip that can be played over and over |
 //! | `in_place` | [`stay`]: the way along the ground taken out |
