@@ -7,6 +7,7 @@ use nalgebra::UnitQuaternion;
 
 use crate::clip::Clip;
 use crate::rig::{MAX_JOINTS, MAX_ROWS, Rig};
+use crate::strength::{Curve, Knobs};
 
 /// Filter states that the host steps.
 const MAX_STATES: usize = 16_384;
@@ -28,18 +29,14 @@ pub enum Timing {
 }
 
 /// How a pack is played.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Settings {
     /// Strength and mask.
     pub controls: Controls<MAX_ROWS>,
+    /// A strength that changes while the clip plays, instead of that of `controls`.
+    pub curve: Option<Curve>,
     /// The clock.
     pub timing: Timing,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self { controls: Controls::default(), timing: Timing::Keep }
-    }
 }
 
 /// Translates a clip on the pack's rig and at its frame rate, from the state that holding the first frame leads to.
@@ -63,14 +60,16 @@ pub fn play_on_clock(
     state.controls = settings.controls;
     let mut clock = Vec::with_capacity(source.frames());
     let mut now = 0.0;
-    let strength = settings.controls.strength.clamp(-TIMING_STRENGTH, TIMING_STRENGTH);
+    let knobs = Knobs { controls: settings.controls, curve: settings.curve.clone() };
     let styled = rig.play(source, |frame| {
+        state.controls.strength = knobs.strength(clock.len(), source.frame_time);
         if clock.is_empty() {
             translator.start(&mut state, frame);
         }
         let timing = translator.step(&mut state, frame);
         clock.push(now);
         // Strength acts on the clock as on the pose (up to `TIMING_STRENGTH`): 0 keeps it.
+        let strength = state.controls.strength.clamp(-TIMING_STRENGTH, TIMING_STRENGTH);
         now += f64::from(timing.duration).powf(f64::from(strength));
     });
     Ok((styled, clock))

@@ -107,6 +107,14 @@ pub fn alone(clip: &Clip, map: Option<&JointMap>) -> Judged {
 }
 
 impl Judged {
+    /// Feet in a few words, for a line about one of many clips.
+    pub fn line(&self) -> String {
+        let slides = self.source.as_ref().zip(self.styled.as_ref());
+        let slides = slides
+            .map(|(a, b)| format!("; feet slide {:.1} cm/s, the clip's {:.1}", b.foot_slide_cm_s, a.foot_slide_cm_s));
+        slides.into_iter().chain(self.feet.map(|feet| format!(", {feet}"))).collect()
+    }
+
     /// Prints the table, and what is wrong with the feet.
     pub fn print(&self) {
         if self.styled.is_some() {
