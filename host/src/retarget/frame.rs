@@ -1,0 +1,107 @@
+//! One frame of a pair of skeletons.
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+use super::pair::{Aim, Base, Hips, Pair, Shoulder};
+use super::swing;
+use crate::clip::Clip;
+
+/// A pose of the clip.
+struct Pose {
+    positions: Vec<Vector3<f64>>,
+    worlds: Vec<UnitQuaternion<f64>>,
+}
+
+impl Pair<'_> {
+    /// The rig's local rotations of every frame.
+    pub fn rotations(&self, clip: &Clip) -> Vec<UnitQuaternion<f64>> {
+        let n = self.rig.len();
+        let mut out = Vec::with_capacity(clip.frames() * n);
+        for frame in 0..clip.frames() {
+            let pose = Pose {
+                positions: clip.positions(frame),
+                worlds: clip.skeleton.world_rotations(clip.pose(frame)),
+            };
+            let worlds = self.worlds(&pose);
+            out.extend(self.rig.joints.iter().zip(&worlds).map(|(joint, world)| match joint.parent {
+                Some(p) => worlds[p].inverse() * world,
+                None => *world,
+            }));
+        }
+        out
+    }
+
+    fn worlds(&self, pose: &Pose) -> Vec<UnitQuaternion<f64>> {
+        let mut worlds = vec![UnitQuaternion::identity(); self.rig.len()];
+        for (world, base) in worlds.iter_mut().zip(&self.bases) {
+            match base {
+                Base::Partner { joint, align } => *world = pose.worlds[*joint] * align,
+                Base::Between { above, below, share, stance } => {
+                    let turned = |joint: usize| pose.worlds[joint] * self.rested[joint];
+                    let (a, b) = (turned(*above), turned(*below));
+                    *world = a.try_slerp(&b, *share, 1e-9).unwrap_or(a) * stance;
+                }
+                Base::Follow(_) => {}
+            }
+        }
+        if let Some(hips) = &self.hips {
+            lay(hips, pose, &mut worlds[hips.joint]);
+        }
+        for aim in &self.aims {
+            point(aim, pose, &mut worlds);
+        }
+        self.follow(&mut worlds);
+        for shoulder in &self.shoulders {
+            self.place(shoulder, pose, &mut worlds);
+        }
+        self.follow(&mut worlds);
+        worlds
+    }
+
+    /// Joints that go with their parents.
+    fn follow(&self, worlds: &mut [UnitQuaternion<f64>]) {
+        for (index, base) in self.bases.iter().enumerate() {
+            if let Base::Follow(local) = base {
+                let above = self.rig.joints[index].parent.map_or_else(UnitQuaternion::identity, |p| worlds[p]);
+                worlds[index] = above * local;
+            }
+        }
+    }
+
+    /// Turns the collar until the shoulder is as far from its place in the stance as the clip's is, in parts of the shoulders' width.
+    fn place(&self, shoulder: &Shoulder, pose: &Pose, worlds: &mut [UnitQuaternion<f64>]) {
+        let [chest, from] = shoulder.from;
+        let away = pose.positions[from] - pose.positions[chest] - pose.worlds[chest] * shoulder.from_stance;
+        let to = worlds[shoulder.chest] * (shoulder.stance - shoulder.collar) + away * self.wider;
+        let bone = worlds[shoulder.turning] * shoulder.bone;
+        worlds[shoulder.turning] = swing(&bone, &to) * worlds[shoulder.turning];
+    }
+}
+
+/// Lays the pelvis along the line of the hips. A bone of the spine that is rigid in it then decides how far it is tipped.
+fn lay(hips: &Hips, pose: &Pose, world: &mut UnitQuaternion<f64>) {
+    let [left, right] = hips.from;
+    let line = pose.positions[left] - pose.positions[right];
+    *world = swing(&(*world * hips.line), &line) * *world;
+    let Some((bone, [from, to])) = hips.spine else { return };
+    let Some(axis) = line.try_normalize(1e-9) else { return };
+    let across = |v: Vector3<f64>| v - axis * v.dot(&axis);
+    let (own, theirs) = (across(*world * bone), across(pose.positions[to] - pose.positions[from]));
+    *world = swing(&own, &theirs) * *world;
+}
+
+/// Turns a chain until its end lies where the clip's limb points.
+fn point(aim: &Aim, pose: &Pose, worlds: &mut [UnitQuaternion<f64>]) {
+    let way = aim.to.place(&pose.positions, &pose.worlds) - pose.positions[aim.from];
+    let Some(way) = way.try_normalize(1e-6) else { return };
+    let (fixed, turning) = aim.chain.split_at(usize::from(aim.fixed));
+    let sum = |bones: &[(usize, Vector3<f64>)]| bones.iter().map(|(k, bone)| worlds[*k] * bone).sum::<Vector3<f64>>();
+    let (start, bone) = (sum(fixed), sum(turning));
+    // How far out on the limb's line the end can lie, if the start does not lie on it.
+    let along = start.dot(&way);
+    let out = along + (along * along - start.norm_squared() + bone.norm_squared()).max(0.0).sqrt();
+    let turn = swing(&bone, &(way * out - start));
+    for (joint, _) in turning {
+        worlds[*joint] = turn * worlds[*joint];
+    }
+}

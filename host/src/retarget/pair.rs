@@ -1,0 +1,329 @@
+//! Skeletons of other joints: which joint is whose partner, and what turns one's axes into the other's.
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+use super::stance::Stance;
+use super::{NO_BONE, RetargetError, swing};
+use crate::clip::{Canonical, Clip, JointMap, Skeleton};
+use crate::rig::Rig;
+
+use Canonical::*;
+
+/// Without these no motion can be transferred; collars, toes, neck and spine may be missing.
+const NEEDED: [Canonical; 15] = [
+    Pelvis, Chest, Head, LShoulder, LElbow, LWrist, RShoulder, RElbow, RWrist, LHip, LKnee, LAnkle, RHip, RKnee, RAnkle,
+];
+
+/// Where a joint of the rig takes its world rotation from.
+#[derive(Clone, Debug)]
+pub(super) enum Base {
+    /// That of the clip's joint, times what turns the rig's axes into the clip's.
+    Partner { joint: usize, align: UnitQuaternion<f64> },
+    /// A share of what two joints of the clip have turned by since the stance.
+    Between { above: usize, below: usize, share: f64, stance: UnitQuaternion<f64> },
+    /// The parent's, times this.
+    Follow(UnitQuaternion<f64>),
+}
+
+/// Joints that turn together until the last one lies in the direction from one joint of the clip to another.
+#[derive(Clone, Debug)]
+pub(super) struct Aim {
+    /// Joints with the bone to the next, in their own axes; the last bone ends at the joint that is aimed, or at the tip.
+    pub chain: Vec<(usize, Vector3<f64>)>,
+    /// The first joint of the chain stays as it is: the pelvis, which lies along the hips.
+    pub fixed: bool,
+    /// The clip's joint at the start, and what is aimed at.
+    pub from: usize,
+    pub to: Target,
+}
+
+/// What a limb of the clip ends at.
+#[derive(Clone, Debug)]
+pub(super) enum Target {
+    Joint(usize),
+    /// The mean of these joints, or of points in the axes of a joint.
+    Tip(Tip),
+}
+
+/// The tip of a leaf, such as a hand: the mean of the joints that hang on it, else a point in its axes.
+#[derive(Clone, Debug)]
+pub(super) enum Tip {
+    Joints(Vec<usize>),
+    Point(usize, Vector3<f64>),
+}
+
+/// A shoulder: where it is in the chest's axes when the body stands, and what turns to bring it where it should be.
+#[derive(Clone, Debug)]
+pub(super) struct Shoulder {
+    /// The rig's chest, the joint that turns, and what leads from one to the other and on to the shoulder, each in the joint's axes.
+    pub chest: usize,
+    pub turning: usize,
+    pub collar: Vector3<f64>,
+    pub bone: Vector3<f64>,
+    /// The shoulder in the rig's chest, in the stance.
+    pub stance: Vector3<f64>,
+    /// The clip's chest and shoulder, and where that is in the chest, in the stance.
+    pub from: [usize; 2],
+    pub from_stance: Vector3<f64>,
+}
+
+/// The pelvis: its line of hips, and the bone of the spine if it is rigid.
+#[derive(Clone, Debug)]
+pub(super) struct Hips {
+    pub joint: usize,
+    pub line: Vector3<f64>,
+    pub from: [usize; 2],
+    pub spine: Option<(Vector3<f64>, [usize; 2])>,
+}
+
+/// Two skeletons, and all that does not change from frame to frame.
+pub(super) struct Pair<'r> {
+    pub rig: &'r Skeleton,
+    pub bases: Vec<Base>,
+    pub aims: Vec<Aim>,
+    pub hips: Option<Hips>,
+    pub shoulders: Vec<Shoulder>,
+    /// How much wider the rig's shoulders are than the clip's.
+    pub wider: f64,
+    /// The clip's stance, inverted: what a joint has turned by since is `G * rested`.
+    pub rested: Vec<UnitQuaternion<f64>>,
+}
+
+impl<'r> Pair<'r> {
+    pub fn new(clip: &Clip, map: &JointMap, rig: &'r Rig) -> Result<Self, RetargetError> {
+        let lacking = |c: &&Canonical| rig.map.joint(**c).is_some() && map.joint(**c).is_none();
+        let missing: Vec<_> = NEEDED.iter().filter(lacking).map(|c| c.name()).collect();
+        if !missing.is_empty() || map.joint(LHip).is_none() || map.joint(RHip).is_none() {
+            return Err(RetargetError::Missing {
+                missing: missing.join(", "),
+                joints: clip.skeleton.joints.iter().map(|j| j.name.as_str()).collect::<Vec<_>>().join(", "),
+            });
+        }
+        Ok(Builder::new(clip, map, rig).build())
+    }
+}
+
+struct Builder<'a, 'r> {
+    clip: &'a Skeleton,
+    map: &'a JointMap,
+    rig: &'r Rig,
+    theirs: Stance,
+    own: Stance,
+    partner: Vec<Option<usize>>,
+}
+
+impl<'a, 'r> Builder<'a, 'r> {
+    fn new(clip: &'a Clip, map: &'a JointMap, rig: &'r Rig) -> Self {
+        let mut partner = vec![None; rig.skeleton.len()];
+        for canonical in Canonical::ALL {
+            if let (Some(to), Some(from)) = (rig.map.joint(canonical), map.joint(canonical)) {
+                partner[to] = Some(from);
+            }
+        }
+        partner[0] = partner[0].or(map.joint(Pelvis));
+        let (theirs, own) = (Stance::of_clip(clip, map), Stance::of_rig(&rig.skeleton, &rig.map));
+        Self { clip: &clip.skeleton, map, rig, theirs, own, partner }
+    }
+
+    fn parent(&self, joint: usize) -> Option<usize> {
+        self.rig.skeleton.joints[joint].parent
+    }
+
+    /// The nearest ancestor with a partner.
+    fn above(&self, joint: usize) -> Option<usize> {
+        let mut up = self.parent(joint);
+        while let Some(p) = up.filter(|p| self.partner[*p].is_none()) {
+            up = self.parent(p);
+        }
+        up
+    }
+
+    fn is(&self, joint: usize, among: &[Canonical]) -> bool {
+        among.iter().any(|c| self.rig.map.joint(*c) == Some(joint))
+    }
+
+    /// From one joint of the rig to one below it, in the axes of the upper one, in the stance.
+    fn bone(&self, from: usize, to: usize) -> Vector3<f64> {
+        self.own.worlds[from].inverse() * (self.own.positions[to] - self.own.positions[from])
+    }
+
+    /// Joints without a partner between a joint of the trunk and its nearest ancestor with one: they share the turn.
+    fn between(&self, joint: usize) -> Vec<usize> {
+        let mut found = Vec::new();
+        if self.is(joint, &[Spine, Chest, Neck, Head]) {
+            let mut up = self.parent(joint);
+            while let Some(p) = up.filter(|p| self.partner[*p].is_none()) {
+                found.insert(0, p);
+                up = self.parent(p);
+            }
+        }
+        found
+    }
+
+    fn build(self) -> Pair<'r> {
+        let n = self.rig.skeleton.len();
+        let mut aims = Vec::new();
+        let mut shared: Vec<Option<(usize, usize, f64)>> = vec![None; n];
+        let pelvis = self.rig.map.joint(Pelvis).unwrap_or(0);
+        let mut aimed = vec![false; n];
+        aimed[pelvis] = true;
+        let mut spine = None;
+        for joint in 0..n {
+            let (Some(partner), Some(above)) = (self.partner[joint], self.above(joint)) else { continue };
+            let trunk = [Spine, Chest, Neck, Head];
+            let limb = [LElbow, LWrist, LKnee, LAnkle, LToe, RElbow, RWrist, RKnee, RAnkle, RToe];
+            let from = self.partner[above].unwrap_or(partner);
+            if from == partner || !(self.is(joint, &trunk) || self.is(joint, &limb)) {
+                continue;
+            }
+            let between = self.between(joint);
+            for (at, k) in between.iter().enumerate() {
+                shared[*k] = Some((from, partner, (at + 1) as f64 / (between.len() + 1) as f64));
+            }
+            let nodes: Vec<usize> = [above].into_iter().chain(between).chain([joint]).collect();
+            let chain: Vec<_> = nodes.windows(2).map(|w| (w[0], self.bone(w[0], w[1]))).collect();
+            if above == pelvis && chain.len() == 1 && spine.is_none() {
+                spine = Some((chain[0].1, [from, partner]));
+            } else {
+                let fixed = std::mem::replace(&mut aimed[above], true);
+                aims.push(Aim { chain, fixed, from, to: Target::Joint(partner) });
+            }
+        }
+        let tips = [LWrist, RWrist, LAnkle, RAnkle, Head, LToe, RToe];
+        for canonical in tips {
+            let (Some(joint), Some(from)) = (self.rig.map.joint(canonical), self.map.joint(canonical)) else { continue };
+            let own = tip(&self.rig.skeleton, joint, canonical == Head);
+            let theirs = tip(self.clip, from, canonical == Head);
+            // Two heads in rest poses that are upright look ahead in both.
+            let straight = match canonical {
+                LWrist | RWrist => true,
+                Head => !(self.own.rests && self.theirs.rests),
+                _ => false,
+            };
+            let guess = |stance: &Stance, skeleton: &Skeleton, joint: usize| {
+                straight.then(|| Tip::Point(joint, stance.straight(skeleton, joint, canonical == Head)))
+            };
+            let own = own.or_else(|| guess(&self.own, &self.rig.skeleton, joint));
+            let theirs = theirs.or_else(|| guess(&self.theirs, self.clip, from));
+            if let (Some(own), Some(tip), false) = (own, theirs, aimed[joint]) {
+                aimed[joint] = true;
+                let bone = Target::Tip(own).place(&self.own.positions, &self.own.worlds) - self.own.positions[joint];
+                let chain = vec![(joint, self.own.worlds[joint].inverse() * bone)];
+                aims.push(Aim { chain, fixed: false, from, to: Target::Tip(tip) });
+            }
+        }
+        let turns = self.turns(&aims, pelvis);
+        let base = |joint: usize| {
+            let stance = turns[joint] * self.own.worlds[joint];
+            match (self.partner[joint], shared[joint]) {
+                (Some(partner), _) => Base::Partner { joint: partner, align: self.theirs.worlds[partner].inverse() * stance },
+                (None, Some((above, below, share))) => Base::Between { above, below, share, stance },
+                (None, None) => {
+                    let above = self.parent(joint).map_or_else(UnitQuaternion::identity, |p| self.own.worlds[p]);
+                    Base::Follow(above.inverse() * self.own.worlds[joint])
+                }
+            }
+        };
+        let wide = |stance: &Stance, map: &JointMap| {
+            Some((stance.positions[map.joint(LShoulder)?] - stance.positions[map.joint(RShoulder)?]).norm())
+        };
+        let widths = wide(&self.own, &self.rig.map).zip(wide(&self.theirs, self.map));
+        Pair {
+            bases: (0..n).map(base).collect(),
+            hips: self.hips(pelvis, spine),
+            shoulders: [LShoulder, RShoulder].into_iter().filter_map(|side| self.shoulder(side)).collect(),
+            wider: widths.filter(|(_, b)| *b > NO_BONE).map_or(1.0, |(a, b)| a / b),
+            rested: self.theirs.worlds.iter().map(UnitQuaternion::inverse).collect(),
+            rig: &self.rig.skeleton,
+            aims,
+        }
+    }
+
+    /// What turns every joint of the rig, in the stance, until its bones lie as the clip's do there.
+    fn turns(&self, aims: &[Aim], pelvis: usize) -> Vec<UnitQuaternion<f64>> {
+        let n = self.rig.skeleton.len();
+        let mut turns = vec![UnitQuaternion::identity(); n];
+        for joint in 0..n {
+            let above = self.parent(joint).map_or_else(UnitQuaternion::identity, |p| turns[p]);
+            // Limbs go on from what is above them: a straight arm that hangs turns as a whole, and feet roll with shins. The trunk does not.
+            let goes_on = joint != pelvis && !self.is(joint, &[Spine, Chest, Neck, Head]);
+            let start = if goes_on { above } else { UnitQuaternion::identity() };
+            let aim = aims.iter().find(|aim| !aim.fixed && aim.chain[0].0 == joint);
+            turns[joint] = match aim {
+                Some(aim) => {
+                    let bones = aim.chain.iter().map(|(k, bone)| self.own.worlds[*k] * bone);
+                    let own: Vector3<f64> = bones.sum();
+                    let theirs = aim.to.place(&self.theirs.positions, &self.theirs.worlds) - self.theirs.positions[aim.from];
+                    swing(&(start * own), &theirs) * start
+                }
+                None => start,
+            };
+        }
+        turns
+    }
+
+    fn hips(&self, pelvis: usize, spine: Option<(Vector3<f64>, [usize; 2])>) -> Option<Hips> {
+        let own = [LHip, RHip].map(|hip| self.rig.map.joint(hip));
+        let from = [LHip, RHip].map(|hip| self.map.joint(hip));
+        let ([Some(l), Some(r)], [Some(left), Some(right)]) = (own, from) else { return None };
+        let line = self.bone(pelvis, l) - self.bone(pelvis, r);
+        Some(Hips { joint: pelvis, line, from: [left, right], spine })
+    }
+
+    /// Nothing where the shoulder is rigid in the chest, or where the clip lacks it.
+    fn shoulder(&self, side: Canonical) -> Option<Shoulder> {
+        let (own, from) = (self.rig.map.joint(side)?, self.map.joint(side)?);
+        let collar = |joint: usize| self.is(joint, &[LCollar, RCollar]);
+        let mut chest = self.above(own)?;
+        if collar(chest) {
+            chest = self.above(chest)?;
+        }
+        let mut turning = self.parent(own)?;
+        if turning == chest {
+            return None;
+        }
+        while let Some(up) = self.parent(turning).filter(|up| *up != chest) {
+            turning = up;
+        }
+        let partner = self.partner[chest]?;
+        let theirs = self.theirs.positions[from] - self.theirs.positions[partner];
+        Some(Shoulder {
+            chest,
+            turning,
+            collar: self.bone(chest, turning),
+            bone: self.bone(turning, own),
+            stance: self.bone(chest, own),
+            from: [partner, from],
+            from_stance: self.theirs.worlds[partner].inverse() * theirs,
+        })
+    }
+}
+
+impl Target {
+    /// Where it is in a pose.
+    pub fn place(&self, positions: &[Vector3<f64>], worlds: &[UnitQuaternion<f64>]) -> Vector3<f64> {
+        match self {
+            Self::Joint(joint) => positions[*joint],
+            Self::Tip(Tip::Point(joint, point)) => positions[*joint] + worlds[*joint] * point,
+            Self::Tip(Tip::Joints(joints)) => {
+                joints.iter().map(|j| positions[*j]).sum::<Vector3<f64>>() / joints.len().max(1) as f64
+            }
+        }
+    }
+}
+
+/// The tip of a joint: the mean of what hangs on it, seen through joints at no distance; else its end site. What hangs on a head are eyes
+/// and hair.
+fn tip(skeleton: &Skeleton, joint: usize, head: bool) -> Option<Tip> {
+    let (mut at, mut found) = (vec![joint], Vec::new());
+    while let Some(up) = at.pop().filter(|_| !head) {
+        for child in skeleton.children(up) {
+            if skeleton.joints[child].offset.norm() > NO_BONE { found.push(child) } else { at.push(child) }
+        }
+    }
+    if !found.is_empty() {
+        return Some(Tip::Joints(found));
+    }
+    let end = skeleton.joints[joint].end.filter(|end| end.norm() > NO_BONE);
+    end.map(|end| Tip::Point(joint, end))
+}

@@ -1,0 +1,188 @@
+//! An upright pose of any skeleton, to compare rest poses in: arms and legs straight, facing +Z.
+//!
+//! Some rest poses are one (CMU, Daz). Others lay every bone along its own axis (Bandai Namco, Character Creator), so that legs point up.
+//! A clip's mean pose then stands for it, or, where there is no clip, a pose with the arms held out that is made by the smallest turns.
+
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+
+use super::NO_BONE;
+use crate::clip::solve::turn;
+use crate::clip::{Canonical, Clip, JointMap, Skeleton};
+
+use Canonical::*;
+
+/// World rotations and positions of every joint.
+pub(super) struct Stance {
+    pub worlds: Vec<UnitQuaternion<f64>>,
+    pub positions: Vec<Vector3<f64>>,
+    /// Whether it is the rest pose.
+    pub rests: bool,
+    /// Whether it is the mean of a clip, in which hands and heads may be bent.
+    bent: bool,
+}
+
+impl Stance {
+    /// Of a clip's skeleton: its rest pose, else the mean pose of the clip.
+    pub fn of_clip(clip: &Clip, map: &JointMap) -> Self {
+        Self::at_rest(&clip.skeleton, map).unwrap_or_else(|| Self::mean(clip, map))
+    }
+
+    /// Of a rig: its rest pose, else a pose with the arms held out.
+    pub fn of_rig(skeleton: &Skeleton, map: &JointMap) -> Self {
+        Self::at_rest(skeleton, map).unwrap_or_else(|| Self::built(skeleton, map))
+    }
+
+    fn new(skeleton: &Skeleton, locals: &[UnitQuaternion<f64>]) -> Self {
+        Self {
+            worlds: skeleton.world_rotations(locals),
+            positions: skeleton.pose_positions(&Vector3::zeros(), locals),
+            rests: false,
+            bent: false,
+        }
+    }
+
+    /// Where the tip of a hand or a head without one is, in its axes: on from the forearm, up from the neck.
+    pub fn straight(&self, skeleton: &Skeleton, joint: usize, head: bool) -> Vector3<f64> {
+        let offset = skeleton.joints[joint].offset;
+        match skeleton.joints[joint].parent {
+            _ if self.bent => offset,
+            _ if head => self.worlds[joint].inverse() * Vector3::y(),
+            Some(p) => self.worlds[joint].inverse() * (self.worlds[p] * offset),
+            None => offset,
+        }
+    }
+
+    /// The rest pose, if it is upright with straight arms that are held out or hang.
+    fn at_rest(skeleton: &Skeleton, map: &JointMap) -> Option<Self> {
+        let mut locals = vec![UnitQuaternion::identity(); skeleton.len()];
+        let across = across(&skeleton.rest_positions(), map)?;
+        locals[0] = facing(&across)?.inverse();
+        let stance = Self::new(skeleton, &locals);
+        let way = |from: Canonical, to: Canonical| {
+            Some((stance.positions[map.joint(to)?] - stance.positions[map.joint(from)?]).normalize())
+        };
+        let arm = |shoulder, elbow, wrist, out: f64| {
+            let (upper, lower) = (way(shoulder, elbow)?, way(elbow, wrist)?);
+            let (outward, down) = (out * upper.x, -upper.y);
+            Some(upper.dot(&lower) > 0.7 && outward > -0.3 && (outward > 0.5 || down > 0.5))
+        };
+        let upright = way(Pelvis, Head)?.y > 0.7
+            && way(LHip, LAnkle)?.y < -0.7
+            && way(RHip, RAnkle)?.y < -0.7
+            && arm(LShoulder, LElbow, LWrist, 1.0)?
+            && arm(RShoulder, RElbow, RWrist, -1.0)?;
+        upright.then_some(Self { rests: true, ..stance })
+    }
+
+    /// The mean of a clip's poses, without their headings.
+    fn mean(clip: &Clip, map: &JointMap) -> Self {
+        let n = clip.skeleton.len();
+        let mut sums = vec![Quaternion::new(0.0, 0.0, 0.0, 0.0); n];
+        for frame in 0..clip.frames() {
+            let heading = across(&clip.positions(frame), map).and_then(|across| facing(&across));
+            for (joint, (sum, local)) in sums.iter_mut().zip(clip.pose(frame)).enumerate() {
+                let ahead = heading.filter(|_| joint == 0).map_or(*local, |heading| heading.inverse() * local);
+                let sign = if sum.dot(ahead.quaternion()) < 0.0 { -1.0 } else { 1.0 };
+                *sum += ahead.into_inner() * sign;
+            }
+        }
+        let locals = sums.into_iter().map(|sum| UnitQuaternion::try_new(sum, 1e-9).unwrap_or_default());
+        Self { bent: true, ..Self::new(&clip.skeleton, &locals.collect::<Vec<_>>()) }
+    }
+
+    /// Spine up, legs down, feet ahead, arms out, left on the left: from the root outwards, by the smallest turns.
+    fn built(skeleton: &Skeleton, map: &JointMap) -> Self {
+        let goals = goals(skeleton, map);
+        let mut worlds: Vec<UnitQuaternion<f64>> = Vec::with_capacity(skeleton.len());
+        let mut locals = Vec::with_capacity(skeleton.len());
+        for (index, joint) in skeleton.joints.iter().enumerate() {
+            let above = joint.parent.map_or_else(UnitQuaternion::identity, |p| worlds[p]);
+            let mut bones = vec![index];
+            let (mut pairs, mut sides) = (Vec::new(), [None, None]);
+            while let Some(at) = bones.pop() {
+                for child in skeleton.children(at) {
+                    let offset = skeleton.joints[child].offset;
+                    match goals[child] {
+                        _ if offset.norm() < NO_BONE => bones.push(child),
+                        Some(Goal::Towards(way)) => pairs.push((above * offset, way * offset.norm())),
+                        Some(Goal::Side(side)) => sides[side] = Some(offset),
+                        None => {}
+                    }
+                }
+            }
+            if let [Some(left), Some(right)] = sides {
+                let line = left - right;
+                pairs.push((above * line, Vector3::x() * line.norm()));
+            }
+            if let Some(end) = joint.end.filter(|end| pairs.is_empty() && end.norm() > NO_BONE) {
+                let ankle = [LAnkle, RAnkle].iter().any(|a| map.joint(*a) == Some(index));
+                pairs.extend(ankle.then(|| (above * end, ahead())));
+            }
+            let world = turn_about_ahead(&pairs) * above;
+            locals.push(above.inverse() * world);
+            worlds.push(world);
+        }
+        Self::new(skeleton, &locals)
+    }
+}
+
+/// Where a bone points in the built pose.
+#[derive(Clone, Copy)]
+enum Goal {
+    Towards(Vector3<f64>),
+    /// Left or right of its partner.
+    Side(usize),
+}
+
+fn ahead() -> Vector3<f64> {
+    Vector3::new(0.0, -0.3, 1.0).normalize()
+}
+
+/// Where the bone that leads to each joint points: that of the first canonical joint at it or below it.
+fn goals(skeleton: &Skeleton, map: &JointMap) -> Vec<Option<Goal>> {
+    let goal = |canonical: Canonical| match canonical {
+        Pelvis => None,
+        Spine | Chest | Neck | Head => Some(Goal::Towards(Vector3::y())),
+        LCollar | LHip => Some(Goal::Side(0)),
+        RCollar | RHip => Some(Goal::Side(1)),
+        LShoulder | LElbow | LWrist => Some(Goal::Towards(Vector3::x())),
+        RShoulder | RElbow | RWrist => Some(Goal::Towards(-Vector3::x())),
+        LKnee | LAnkle | RKnee | RAnkle => Some(Goal::Towards(-Vector3::y())),
+        LToe | RToe => Some(Goal::Towards(ahead())),
+    };
+    let mut goals: Vec<Option<Goal>> = vec![None; skeleton.len()];
+    for canonical in Canonical::ALL {
+        if let Some(joint) = map.joint(canonical) {
+            goals[joint] = goal(canonical);
+        }
+    }
+    for joint in (1..skeleton.len()).rev() {
+        if let Some(parent) = skeleton.joints[joint].parent {
+            let known = Canonical::ALL.iter().any(|c| map.joint(*c) == Some(parent));
+            goals[parent] = goals[parent].or(goals[joint].filter(|_| !known));
+        }
+    }
+    goals
+}
+
+/// From the right hip to the left one.
+fn across(positions: &[Vector3<f64>], map: &JointMap) -> Option<Vector3<f64>> {
+    Some(positions[map.joint(LHip)?] - positions[map.joint(RHip)?])
+}
+
+/// The turn about the vertical of somebody whose hips lie so.
+fn facing(across: &Vector3<f64>) -> Option<UnitQuaternion<f64>> {
+    let flat = across.x.hypot(across.z) > NO_BONE;
+    flat.then(|| UnitQuaternion::from_axis_angle(&Vector3::y_axis(), f64::atan2(-across.z, across.x)))
+}
+
+/// The best turn of the pairs; nearly half a turn of one bone goes about the axis ahead, as legs do whose hips have the bone's axis up.
+fn turn_about_ahead(pairs: &[(Vector3<f64>, Vector3<f64>)]) -> UnitQuaternion<f64> {
+    match pairs {
+        [(from, to)] if from.angle(to) > 2.9 => {
+            let half = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), std::f64::consts::PI);
+            turn(&[(half * from, *to)]) * half
+        }
+        _ => turn(pairs),
+    }
+}
