@@ -68,11 +68,11 @@ impl Pair<'_> {
         }
     }
 
-    /// Turns the collar until the shoulder is as far from its place in the stance as the clip's is, in parts of the shoulders' width.
+    /// Turns the collar until the shoulder is as far from its place in the stance as the clip's is, in parts of its size.
     fn place(&self, shoulder: &Shoulder, pose: &Pose, worlds: &mut [UnitQuaternion<f64>]) {
         let [chest, from] = shoulder.from;
         let away = pose.positions[from] - pose.positions[chest] - pose.worlds[chest] * shoulder.from_stance;
-        let to = worlds[shoulder.chest] * (shoulder.stance - shoulder.collar) + away * self.wider;
+        let to = worlds[shoulder.chest] * (shoulder.stance - shoulder.collar) + away * shoulder.scale;
         let bone = worlds[shoulder.turning] * shoulder.bone;
         worlds[shoulder.turning] = swing(&bone, &to) * worlds[shoulder.turning];
     }

@@ -10,7 +10,7 @@ use crate::rig::Rig;
 const FLOOR: f64 = 0.05;
 /// Feet that are no higher above the floor stand on it, m.
 const STANDS: f64 = 0.02;
-/// Feet are no deeper under the floor, m, unless the clip's are.
+/// Feet are no deeper under the floor, m.
 const UNDER: f64 = 0.008;
 
 /// How much longer the rig's legs are. Legs that differ by less than a tenth of a millimetre in a metre are the same legs.
@@ -59,9 +59,8 @@ fn lift(before: &[f64], after: &[f64], scale: f64) -> f64 {
     let stands = before.iter().zip(after).filter(|(before, _)| **before < floor + STANDS);
     let above = |before: &f64| (before - floor).max(0.0) * scale;
     let lift = share(stands.map(|(before, after)| floor + above(before) - after).collect(), 0.5);
-    let least = |heights: &[f64]| heights.iter().copied().fold(f64::INFINITY, f64::min);
-    let under = UNDER.max(scale * (floor - least(before)));
-    let lift = lift.max(floor - under - least(after));
+    let least = after.iter().copied().fold(f64::INFINITY, f64::min);
+    let lift = lift.max(floor - UNDER - least);
     if lift.is_finite() { lift } else { 0.0 }
 }
 

@@ -1,8 +1,8 @@
 //! Skeletons of other joints: which joint is whose partner, and what turns one's axes into the other's.
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
-use super::stance::Stance;
+use super::stance::{BENDS, Stance};
 use super::{NO_BONE, RetargetError, swing};
 use crate::clip::{Canonical, Clip, JointMap, Skeleton};
 use crate::rig::Rig;
@@ -30,7 +30,7 @@ pub(super) enum Base {
 pub(super) struct Aim {
     /// Joints with the bone to the next, in their own axes; the last bone ends at the joint that is aimed, or at the tip.
     pub chain: Vec<(usize, Vector3<f64>)>,
-    /// The first joint of the chain stays as it is: the pelvis, which lies along the hips.
+    /// The first joint of the chain stays as it is.
     pub fixed: bool,
     /// The clip's joint at the start, and what is aimed at.
     pub from: usize,
@@ -65,6 +65,8 @@ pub(super) struct Shoulder {
     /// The clip's chest and shoulder, and where that is in the chest, in the stance.
     pub from: [usize; 2],
     pub from_stance: Vector3<f64>,
+    /// How far the shoulder goes for what the clip's goes: in parts of the shoulders' width, and no further than the collar turns.
+    pub scale: f64,
 }
 
 /// The pelvis: its line of hips, and the bone of the spine if it is rigid.
@@ -83,8 +85,6 @@ pub(super) struct Pair<'r> {
     pub aims: Vec<Aim>,
     pub hips: Option<Hips>,
     pub shoulders: Vec<Shoulder>,
-    /// How much wider the rig's shoulders are than the clip's.
-    pub wider: f64,
     /// The clip's stance, inverted: what a joint has turned by since is `G * rested`.
     pub rested: Vec<UnitQuaternion<f64>>,
 }
@@ -121,7 +121,7 @@ impl<'a, 'r> Builder<'a, 'r> {
             }
         }
         partner[0] = partner[0].or(map.joint(Pelvis));
-        let (theirs, own) = (Stance::of_clip(clip, map), Stance::of_rig(&rig.skeleton, &rig.map));
+        let (theirs, own) = (Stance::of_clip(clip, map), Stance::of_rig(rig));
         Self { clip: &clip.skeleton, map, rig, theirs, own, partner }
     }
 
@@ -185,7 +185,8 @@ impl<'a, 'r> Builder<'a, 'r> {
             if above == pelvis && chain.len() == 1 && spine.is_none() {
                 spine = Some((chain[0].1, [from, partner]));
             } else {
-                let fixed = std::mem::replace(&mut aimed[above], true);
+                // The pelvis lies along the hips, the chest carries the shoulders: they do not follow what only the next joint does.
+                let fixed = std::mem::replace(&mut aimed[above], true) || self.is(above, &[Chest]);
                 aims.push(Aim { chain, fixed, from, to: Target::Joint(partner) });
             }
         }
@@ -224,15 +225,10 @@ impl<'a, 'r> Builder<'a, 'r> {
                 }
             }
         };
-        let wide = |stance: &Stance, map: &JointMap| {
-            Some((stance.positions[map.joint(LShoulder)?] - stance.positions[map.joint(RShoulder)?]).norm())
-        };
-        let widths = wide(&self.own, &self.rig.map).zip(wide(&self.theirs, self.map));
         Pair {
             bases: (0..n).map(base).collect(),
             hips: self.hips(pelvis, spine),
             shoulders: [LShoulder, RShoulder].into_iter().filter_map(|side| self.shoulder(side)).collect(),
-            wider: widths.filter(|(_, b)| *b > NO_BONE).map_or(1.0, |(a, b)| a / b),
             rested: self.theirs.worlds.iter().map(UnitQuaternion::inverse).collect(),
             rig: &self.rig.skeleton,
             aims,
@@ -248,18 +244,27 @@ impl<'a, 'r> Builder<'a, 'r> {
             // Limbs go on from what is above them: a straight arm that hangs turns as a whole, and feet roll with shins. The trunk does not.
             let goes_on = joint != pelvis && !self.is(joint, &[Spine, Chest, Neck, Head]);
             let start = if goes_on { above } else { UnitQuaternion::identity() };
-            let aim = aims.iter().find(|aim| !aim.fixed && aim.chain[0].0 == joint);
+            let aim = aims.iter().find(|aim| joint != pelvis && aim.chain[0].0 == joint);
             turns[joint] = match aim {
                 Some(aim) => {
                     let bones = aim.chain.iter().map(|(k, bone)| self.own.worlds[*k] * bone);
                     let own: Vector3<f64> = bones.sum();
                     let theirs = aim.to.place(&self.theirs.positions, &self.theirs.worlds) - self.theirs.positions[aim.from];
-                    swing(&(start * own), &theirs) * start
+                    match self.axes(joint) {
+                        Some((axis, bends)) => across(&own, &axis).zip(across(&theirs, &bends)).map_or(start, |(a, b)| b * a.inverse()),
+                        None => swing(&(start * own), &theirs) * start,
+                    }
                 }
                 None => start,
             };
         }
         turns
+    }
+
+    /// The axes about which the limb below a joint bends, in the rig's stance and in the clip's, where the clip's rest pose does not say.
+    fn axes(&self, joint: usize) -> Option<(Vector3<f64>, Vector3<f64>)> {
+        let at = BENDS.iter().position(|(limb, _)| self.rig.map.joint(limb[0]) == Some(joint))?;
+        Some((self.own.axes[at].unwrap_or_else(|| BENDS[at].1.into()), self.theirs.axes[at]?))
     }
 
     fn hips(&self, pelvis: usize, spine: Option<(Vector3<f64>, [usize; 2])>) -> Option<Hips> {
@@ -287,16 +292,34 @@ impl<'a, 'r> Builder<'a, 'r> {
         }
         let partner = self.partner[chest]?;
         let theirs = self.theirs.positions[from] - self.theirs.positions[partner];
+        let bone = self.bone(turning, own);
+        let wide = |stance: &Stance, map: &JointMap| {
+            Some((stance.positions[map.joint(LShoulder)?] - stance.positions[map.joint(RShoulder)?]).norm())
+        };
+        let above = self.clip.joints[from].parent.filter(|p| *p != partner);
+        let reach = above.map(|p| (self.theirs.positions[from] - self.theirs.positions[p]).norm());
+        let ratio = |own: f64, theirs: f64| if theirs > NO_BONE { own / theirs } else { f64::INFINITY };
+        let wider = ratio(wide(&self.own, &self.rig.map)?, wide(&self.theirs, self.map)?);
+        let scale = wider.min(reach.map_or(f64::INFINITY, |reach| ratio(bone.norm(), reach)));
         Some(Shoulder {
             chest,
             turning,
             collar: self.bone(chest, turning),
-            bone: self.bone(turning, own),
+            bone,
+            scale: if scale.is_finite() { scale } else { 1.0 },
             stance: self.bone(chest, own),
             from: [partner, from],
             from_stance: self.theirs.worlds[partner].inverse() * theirs,
         })
     }
+}
+
+/// Axes of which the first lies along a bone, and the second as near as can be to another axis.
+fn across(bone: &Vector3<f64>, axis: &Vector3<f64>) -> Option<UnitQuaternion<f64>> {
+    let along = bone.try_normalize(NO_BONE)?;
+    let second = (axis - along * axis.dot(&along)).try_normalize(NO_BONE)?;
+    let axes = Matrix3::from_columns(&[along, second, along.cross(&second)]);
+    Some(UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes)))
 }
 
 impl Target {

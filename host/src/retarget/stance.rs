@@ -1,13 +1,16 @@
 //! An upright pose of any skeleton, to compare rest poses in: arms and legs straight, facing +Z.
 //!
 //! Some rest poses are one (CMU, Daz). Others lay every bone along its own axis (Bandai Namco, Character Creator), so that legs point up.
-//! A clip's mean pose then stands for it, or, where there is no clip, a pose with the arms held out that is made by the smallest turns.
+//! A clip's mean pose then stands for it, with the axes about which its elbows and knees bend. Of a pack's rig it is the mean of what the
+//! pack was trained on. Of a rig without one it is a pose with the arms held out that is made by the smallest turns: how its limbs are
+//! twisted about themselves is then a guess.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::NO_BONE;
 use crate::clip::solve::turn;
 use crate::clip::{Canonical, Clip, JointMap, Skeleton};
+use crate::rig::Rig;
 
 use Canonical::*;
 
@@ -19,7 +22,17 @@ pub(super) struct Stance {
     pub rests: bool,
     /// Whether it is the mean of a clip, in which hands and heads may be bent.
     bent: bool,
+    /// The axes about which elbows and knees bend, in the order of [`BENDS`], if they had to be looked for.
+    pub axes: [Option<Vector3<f64>>; 4],
 }
+
+/// Limbs that bend about one axis: their joints, and that axis in a stance with the arms held out.
+pub(super) const BENDS: [([Canonical; 3], [f64; 3]); 4] = [
+    ([LShoulder, LElbow, LWrist], [0.0, -1.0, 0.0]),
+    ([RShoulder, RElbow, RWrist], [0.0, 1.0, 0.0]),
+    ([LHip, LKnee, LAnkle], [1.0, 0.0, 0.0]),
+    ([RHip, RKnee, RAnkle], [1.0, 0.0, 0.0]),
+];
 
 impl Stance {
     /// Of a clip's skeleton: its rest pose, else the mean pose of the clip.
@@ -27,9 +40,22 @@ impl Stance {
         Self::at_rest(&clip.skeleton, map).unwrap_or_else(|| Self::mean(clip, map))
     }
 
-    /// Of a rig: its rest pose, else a pose with the arms held out.
-    pub fn of_rig(skeleton: &Skeleton, map: &JointMap) -> Self {
-        Self::at_rest(skeleton, map).unwrap_or_else(|| Self::built(skeleton, map))
+    /// Of a rig: its rest pose, else the mean of what it was trained on, else a pose with the arms held out.
+    pub fn of_rig(rig: &Rig) -> Self {
+        let (skeleton, map) = (&rig.skeleton, &rig.map);
+        Self::at_rest(skeleton, map).or_else(|| Self::trained(rig)).unwrap_or_else(|| Self::built(skeleton, map))
+    }
+
+    /// The pose at which a trained rig's coordinates are 0.
+    fn trained(rig: &Rig) -> Option<Self> {
+        let turn = |[i, j, k, w]: [f32; 4]| UnitQuaternion::new_normalize(Quaternion::new(w, i, j, k).cast::<f64>());
+        let mut locals: Vec<_> = rig.joint_coordinates().iter().map(|joint| turn(joint.reference)).collect();
+        if locals.iter().all(|local| local.angle() < 1e-3) {
+            return None;
+        }
+        let across = across(&rig.skeleton.pose_positions(&Vector3::zeros(), &locals), &rig.map)?;
+        locals[0] = facing(&across)?.inverse() * locals[0];
+        Some(Self { bent: true, ..Self::new(&rig.skeleton, &locals) })
     }
 
     fn new(skeleton: &Skeleton, locals: &[UnitQuaternion<f64>]) -> Self {
@@ -38,6 +64,7 @@ impl Stance {
             positions: skeleton.pose_positions(&Vector3::zeros(), locals),
             rests: false,
             bent: false,
+            axes: [None; 4],
         }
     }
 
@@ -87,7 +114,12 @@ impl Stance {
             }
         }
         let locals = sums.into_iter().map(|sum| UnitQuaternion::try_new(sum, 1e-9).unwrap_or_default());
-        Self { bent: true, ..Self::new(&clip.skeleton, &locals.collect::<Vec<_>>()) }
+        let stance = Self::new(&clip.skeleton, &locals.collect::<Vec<_>>());
+        let axes = BENDS.map(|(limb, _)| {
+            let upper = map.joint(limb[0])?;
+            Some(stance.worlds[upper] * bend(clip, [upper, map.joint(limb[1])?, map.joint(limb[2])?])?)
+        });
+        Self { bent: true, axes, ..stance }
     }
 
     /// Spine up, legs down, feet ahead, arms out, left on the left: from the root outwards, by the smallest turns.
@@ -163,6 +195,22 @@ fn goals(skeleton: &Skeleton, map: &JointMap) -> Vec<Option<Goal>> {
         }
     }
     goals
+}
+
+/// The axis about which a limb bends over a clip, in the axes of its first joint; none where it hardly bends, or not about one.
+fn bend(clip: &Clip, limb: [usize; 3]) -> Option<Vector3<f64>> {
+    let (mut sum, mut whole) = (Vector3::zeros(), 0.0);
+    for frame in 0..clip.frames() {
+        let positions = clip.positions(frame);
+        let world = clip.skeleton.world_rotations(clip.pose(frame))[limb[0]];
+        let bone = |from: usize, to: usize| (positions[to] - positions[from]).try_normalize(NO_BONE);
+        let axis = bone(limb[0], limb[1]).zip(bone(limb[1], limb[2])).map_or_else(Vector3::zeros, |(a, b)| a.cross(&b));
+        sum += world.inverse() * axis;
+        whole += axis.norm();
+    }
+    // A bend of 6 degrees on the average.
+    let bends = whole > 0.1 * clip.frames() as f64 && sum.norm() > 0.8 * whole;
+    sum.try_normalize(NO_BONE).filter(|_| bends)
 }
 
 /// From the right hip to the left one.
