@@ -82,7 +82,7 @@ fn print(all: &[(usize, usize, usize, Measured, f64)]) {
     for (from, to, at, m, native) in all {
         let mut limbs = m.limbs.clone();
         limbs.sort_by(|a, b| b.3.total_cmp(&a.3));
-        let limbs: Vec<String> = limbs.iter().take(3).map(|l| format!("{} {:.1} {:.1}", l.0, l.2, l.3)).collect();
+        let limbs: Vec<String> = limbs.iter().take(4).map(|l| format!("{} {:.1} {:.1}", l.0, l.2, l.3)).collect();
         println!(
             "{:>11} {at} -> {:<9} {:<60} | {:5.1} {:4.1} | {:5.1} {:5.1} | {:.2} {:.2} {:.2} ({:.2} {:.2}) | {:5.1} {:5.1}",
             BODIES[*from].0,

@@ -2,7 +2,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::pair::{Aim, Base, Hips, Pair, Shoulder};
+use super::pair::{Aim, Base, Hips, Pair, Shoulders};
 use super::swing;
 use crate::clip::Clip;
 
@@ -51,8 +51,8 @@ impl Pair<'_> {
             point(aim, pose, &mut worlds);
         }
         self.follow(&mut worlds);
-        for shoulder in &self.shoulders {
-            self.place(shoulder, pose, &mut worlds);
+        if let Some(shoulders) = &self.shoulders {
+            self.place(shoulders, pose, &mut worlds);
         }
         self.follow(&mut worlds);
         worlds
@@ -68,13 +68,19 @@ impl Pair<'_> {
         }
     }
 
-    /// Turns the collar until the shoulder is as far from its place in the stance as the clip's is, in parts of its size.
-    fn place(&self, shoulder: &Shoulder, pose: &Pose, worlds: &mut [UnitQuaternion<f64>]) {
-        let [chest, from] = shoulder.from;
-        let away = pose.positions[from] - pose.positions[chest] - pose.worlds[chest] * shoulder.from_stance;
-        let to = worlds[shoulder.chest] * (shoulder.stance - shoulder.collar) + away * shoulder.scale;
-        let bone = worlds[shoulder.turning] * shoulder.bone;
-        worlds[shoulder.turning] = swing(&bone, &to) * worlds[shoulder.turning];
+    /// Turns the collars until the shoulders lie in the clip's line, as far apart as in the rig's stance, and their middle is as far from
+    /// its place in the stance as the clip's is.
+    fn place(&self, shoulders: &Shoulders, pose: &Pose, worlds: &mut [UnitQuaternion<f64>]) {
+        let [chest, left, right] = shoulders.from;
+        let (left, right) = (pose.positions[left], pose.positions[right]);
+        let away = (left + right) * 0.5 - pose.positions[chest] - pose.worlds[chest] * shoulders.from_middle;
+        let middle = worlds[shoulders.chest] * shoulders.middle + away * shoulders.scale;
+        let half = (left - right) * (0.5 * shoulders.width / shoulders.from_width);
+        for (collar, side) in shoulders.collars.iter().zip([1.0, -1.0]) {
+            let to = middle + half * side - worlds[shoulders.chest] * collar.start;
+            let bone = worlds[collar.joint] * collar.bone;
+            worlds[collar.joint] = swing(&bone, &to) * worlds[collar.joint];
+        }
     }
 }
 

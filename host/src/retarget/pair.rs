@@ -52,20 +52,29 @@ pub(super) enum Tip {
     Point(usize, Vector3<f64>),
 }
 
-/// A shoulder: where it is in the chest's axes when the body stands, and what turns to bring it where it should be.
+/// A collar that carries a shoulder.
 #[derive(Clone, Debug)]
-pub(super) struct Shoulder {
-    /// The rig's chest, the joint that turns, and what leads from one to the other and on to the shoulder, each in the joint's axes.
-    pub chest: usize,
-    pub turning: usize,
-    pub collar: Vector3<f64>,
+pub(super) struct Collar {
+    /// The joint that turns, its place in the chest, and the bone from it to the shoulder, each in the upper joint's axes.
+    pub joint: usize,
+    pub start: Vector3<f64>,
     pub bone: Vector3<f64>,
-    /// The shoulder in the rig's chest, in the stance.
-    pub stance: Vector3<f64>,
-    /// The clip's chest and shoulder, and where that is in the chest, in the stance.
-    pub from: [usize; 2],
-    pub from_stance: Vector3<f64>,
-    /// How far the shoulder goes for what the clip's goes: in parts of the shoulders' width, and no further than the collar turns.
+}
+
+/// Both shoulders.
+#[derive(Clone, Debug)]
+pub(super) struct Shoulders {
+    pub chest: usize,
+    /// Left and right.
+    pub collars: [Collar; 2],
+    /// The middle of the shoulders in the chest, in the stance, and how far they are apart there.
+    pub middle: Vector3<f64>,
+    pub width: f64,
+    /// The clip's chest and shoulders, and the same of them.
+    pub from: [usize; 3],
+    pub from_middle: Vector3<f64>,
+    pub from_width: f64,
+    /// How far the middle goes for what the clip's goes: in parts of the width, and no further than the collars turn.
     pub scale: f64,
 }
 
@@ -84,7 +93,7 @@ pub(super) struct Pair<'r> {
     pub bases: Vec<Base>,
     pub aims: Vec<Aim>,
     pub hips: Option<Hips>,
-    pub shoulders: Vec<Shoulder>,
+    pub shoulders: Option<Shoulders>,
     /// The clip's stance, inverted: what a joint has turned by since is `G * rested`.
     pub rested: Vec<UnitQuaternion<f64>>,
 }
@@ -228,7 +237,7 @@ impl<'a, 'r> Builder<'a, 'r> {
         Pair {
             bases: (0..n).map(base).collect(),
             hips: self.hips(pelvis, spine),
-            shoulders: [LShoulder, RShoulder].into_iter().filter_map(|side| self.shoulder(side)).collect(),
+            shoulders: self.shoulders(),
             rested: self.theirs.worlds.iter().map(UnitQuaternion::inverse).collect(),
             rig: &self.rig.skeleton,
             aims,
@@ -275,42 +284,44 @@ impl<'a, 'r> Builder<'a, 'r> {
         Some(Hips { joint: pelvis, line, from: [left, right], spine })
     }
 
-    /// Nothing where the shoulder is rigid in the chest, or where the clip lacks it.
-    fn shoulder(&self, side: Canonical) -> Option<Shoulder> {
-        let (own, from) = (self.rig.map.joint(side)?, self.map.joint(side)?);
-        let collar = |joint: usize| self.is(joint, &[LCollar, RCollar]);
+    /// Nothing where the shoulders are rigid in the chest.
+    fn shoulders(&self) -> Option<Shoulders> {
+        let [left, right] = [self.collar(LShoulder)?, self.collar(RShoulder)?];
+        let own = [self.rig.map.joint(LShoulder)?, self.rig.map.joint(RShoulder)?];
+        let [l, r] = [self.map.joint(LShoulder)?, self.map.joint(RShoulder)?];
+        let chest = left.0;
+        let partner = self.partner[chest].filter(|_| right.0 == chest)?;
+        let theirs = &self.theirs.positions;
+        let middle = (theirs[l] + theirs[r]) * 0.5 - theirs[partner];
+        let (width, from_width) = ((self.own.positions[own[0]] - self.own.positions[own[1]]).norm(), (theirs[l] - theirs[r]).norm());
+        let above = self.clip.joints[l].parent.filter(|p| *p != partner);
+        let reach = above.map_or(0.0, |p| (theirs[l] - theirs[p]).norm());
+        let collars = if reach > NO_BONE { left.1.bone.norm() / reach } else { f64::INFINITY };
+        (width > NO_BONE && from_width > NO_BONE).then(|| Shoulders {
+            middle: (self.bone(chest, own[0]) + self.bone(chest, own[1])) * 0.5,
+            from: [partner, l, r],
+            from_middle: self.theirs.worlds[partner].inverse() * middle,
+            scale: (width / from_width).min(collars),
+            collars: [left.1, right.1],
+            chest,
+            width,
+            from_width,
+        })
+    }
+
+    /// What turns to move a shoulder, and in which joint it stands.
+    fn collar(&self, side: Canonical) -> Option<(usize, Collar)> {
+        let own = self.rig.map.joint(side)?;
         let mut chest = self.above(own)?;
-        if collar(chest) {
+        if self.is(chest, &[LCollar, RCollar]) {
             chest = self.above(chest)?;
         }
-        let mut turning = self.parent(own)?;
-        if turning == chest {
-            return None;
+        let mut joint = self.parent(own).filter(|joint| *joint != chest)?;
+        while let Some(up) = self.parent(joint).filter(|up| *up != chest) {
+            joint = up;
         }
-        while let Some(up) = self.parent(turning).filter(|up| *up != chest) {
-            turning = up;
-        }
-        let partner = self.partner[chest]?;
-        let theirs = self.theirs.positions[from] - self.theirs.positions[partner];
-        let bone = self.bone(turning, own);
-        let wide = |stance: &Stance, map: &JointMap| {
-            Some((stance.positions[map.joint(LShoulder)?] - stance.positions[map.joint(RShoulder)?]).norm())
-        };
-        let above = self.clip.joints[from].parent.filter(|p| *p != partner);
-        let reach = above.map(|p| (self.theirs.positions[from] - self.theirs.positions[p]).norm());
-        let ratio = |own: f64, theirs: f64| if theirs > NO_BONE { own / theirs } else { f64::INFINITY };
-        let wider = ratio(wide(&self.own, &self.rig.map)?, wide(&self.theirs, self.map)?);
-        let scale = wider.min(reach.map_or(f64::INFINITY, |reach| ratio(bone.norm(), reach)));
-        Some(Shoulder {
-            chest,
-            turning,
-            collar: self.bone(chest, turning),
-            bone,
-            scale: if scale.is_finite() { scale } else { 1.0 },
-            stance: self.bone(chest, own),
-            from: [partner, from],
-            from_stance: self.theirs.worlds[partner].inverse() * theirs,
-        })
+        let bone = self.bone(joint, own);
+        (bone.norm() > NO_BONE).then(|| (chest, Collar { joint, start: self.bone(chest, joint), bone }))
     }
 }
 

@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 use Canonical::*;
 
 /// Limbs from joint to joint, by class. A limb that a skeleton does not have is left out.
-pub const LIMBS: [(&str, &[(Canonical, Canonical)]); 9] = [
+pub const LIMBS: [(&str, &[(Canonical, Canonical)]); 10] = [
     ("upper arm", &[(LShoulder, LElbow), (RShoulder, RElbow)]),
     ("forearm", &[(LElbow, LWrist), (RElbow, RWrist)]),
     ("thigh", &[(LHip, LKnee), (RHip, RKnee)]),
@@ -18,6 +18,7 @@ pub const LIMBS: [(&str, &[(Canonical, Canonical)]); 9] = [
     ("chest-neck", &[(Chest, Neck)]),
     ("neck", &[(Neck, Head)]),
     ("hips' line", &[(RHip, LHip)]),
+    ("shoulders' line", &[(RShoulder, LShoulder)]),
 ];
 /// Limbs that end in a tip.
 pub const TIPS: [(&str, &[Canonical]); 3] =
