@@ -25,6 +25,8 @@ const BODIES: [(&str, &[&str]); 10] = [
     ("m21", &["m21/style/STRUTTING-1.bvh", "m21/content/jumping-jack.bvh", "m21/content/box-1.bvh"]),
     ("kindergator", &["kindergator/adult/p565_Fly-like-a-bird.csv", "kindergator/adult/p565_Do-two-jumping-jacks.csv"]),
 ];
+/// The first of them have CMU's hips: the spine turns in the pelvis.
+const CMU: usize = 3;
 /// Kinect's skeletons are fitted to a recording: they are sources only.
 const RIGS: usize = 9;
 
@@ -73,6 +75,30 @@ fn every_body_on_every_other() {
         }
     }
     print(&all);
+    for (from, to, at, measured, native) in &all {
+        let pair = format!("{} {at} on {}", BODIES[*from].0, BODIES[*to].0);
+        // CMU's spine turns in the pelvis and its neck in the chest. Where the rig has one bone for both, these two bones cannot follow.
+        let rigid = *from < CMU && *to >= CMU;
+        for (class, _, _, most) in &measured.limbs {
+            let bound = match *class {
+                "lower spine" | "chest-neck" if rigid => 30.0,
+                "lower spine" | "chest-neck" => 2.0,
+                "hips' line" => 2.1,
+                "shoulders' line" => 4.0,
+                _ => 0.1,
+            };
+            assert!(*most < bound, "{pair}: {class} {most} degrees off");
+        }
+        assert!(measured.under[0] < 0.01, "{pair}: {} m under the floor", measured.under[0]);
+        // One recording of a Kinect has feet that point steeply down for a second.
+        let high = if BODIES[*from].0 == "kindergator" { 0.1 } else { 0.045 };
+        assert!(measured.standing[0].abs() < high, "{pair}: stands {} m above the floor", measured.standing[0]);
+        let width = measured.shoulders[1] / native;
+        assert!((0.87..1.12).contains(&width), "{pair}: shoulders {width} of the rig's");
+        // No flips: nothing turns much faster than in the clip.
+        let [fastest, own] = measured.fastest;
+        assert!(fastest < 1.2 * own + 6.0, "{pair}: {fastest} degrees a frame, {own} in the clip");
+    }
 }
 
 fn print(all: &[(usize, usize, usize, Measured, f64)]) {

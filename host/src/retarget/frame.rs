@@ -18,10 +18,8 @@ impl Pair<'_> {
         let n = self.rig.len();
         let mut out = Vec::with_capacity(clip.frames() * n);
         for frame in 0..clip.frames() {
-            let pose = Pose {
-                positions: clip.positions(frame),
-                worlds: clip.skeleton.world_rotations(clip.pose(frame)),
-            };
+            let pose =
+                Pose { positions: clip.positions(frame), worlds: clip.skeleton.world_rotations(clip.pose(frame)) };
             let worlds = self.worlds(&pose);
             out.extend(self.rig.joints.iter().zip(&worlds).map(|(joint, world)| match joint.parent {
                 Some(p) => worlds[p].inverse() * world,

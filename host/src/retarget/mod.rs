@@ -87,3 +87,6 @@ fn leg_length(skeleton: &Skeleton, map: &JointMap) -> f64 {
     let bone = |(a, b)| Some((rest[map.joint(b)?] - rest[map.joint(a)?]).norm());
     legs.into_iter().filter_map(bone).sum()
 }
+
+#[cfg(test)]
+mod tests;

@@ -201,7 +201,9 @@ impl<'a, 'r> Builder<'a, 'r> {
         }
         let tips = [LWrist, RWrist, LAnkle, RAnkle, Head, LToe, RToe];
         for canonical in tips {
-            let (Some(joint), Some(from)) = (self.rig.map.joint(canonical), self.map.joint(canonical)) else { continue };
+            let (Some(joint), Some(from)) = (self.rig.map.joint(canonical), self.map.joint(canonical)) else {
+                continue;
+            };
             let own = tip(&self.rig.skeleton, joint, canonical == Head);
             let theirs = tip(self.clip, from, canonical == Head);
             // Two heads in rest poses that are upright look ahead in both.
@@ -226,7 +228,9 @@ impl<'a, 'r> Builder<'a, 'r> {
         let base = |joint: usize| {
             let stance = turns[joint] * self.own.worlds[joint];
             match (self.partner[joint], shared[joint]) {
-                (Some(partner), _) => Base::Partner { joint: partner, align: self.theirs.worlds[partner].inverse() * stance },
+                (Some(partner), _) => {
+                    Base::Partner { joint: partner, align: self.theirs.worlds[partner].inverse() * stance }
+                }
                 (None, Some((above, below, share))) => Base::Between { above, below, share, stance },
                 (None, None) => {
                     let above = self.parent(joint).map_or_else(UnitQuaternion::identity, |p| self.own.worlds[p]);
@@ -258,9 +262,12 @@ impl<'a, 'r> Builder<'a, 'r> {
                 Some(aim) => {
                     let bones = aim.chain.iter().map(|(k, bone)| self.own.worlds[*k] * bone);
                     let own: Vector3<f64> = bones.sum();
-                    let theirs = aim.to.place(&self.theirs.positions, &self.theirs.worlds) - self.theirs.positions[aim.from];
+                    let theirs =
+                        aim.to.place(&self.theirs.positions, &self.theirs.worlds) - self.theirs.positions[aim.from];
                     match self.axes(joint) {
-                        Some((axis, bends)) => across(&own, &axis).zip(across(&theirs, &bends)).map_or(start, |(a, b)| b * a.inverse()),
+                        Some((axis, bends)) => {
+                            across(&own, &axis).zip(across(&theirs, &bends)).map_or(start, |(a, b)| b * a.inverse())
+                        }
                         None => swing(&(start * own), &theirs) * start,
                     }
                 }
@@ -293,7 +300,8 @@ impl<'a, 'r> Builder<'a, 'r> {
         let partner = self.partner[chest].filter(|_| right.0 == chest)?;
         let theirs = &self.theirs.positions;
         let middle = (theirs[l] + theirs[r]) * 0.5 - theirs[partner];
-        let (width, from_width) = ((self.own.positions[own[0]] - self.own.positions[own[1]]).norm(), (theirs[l] - theirs[r]).norm());
+        let (width, from_width) =
+            ((self.own.positions[own[0]] - self.own.positions[own[1]]).norm(), (theirs[l] - theirs[r]).norm());
         let above = self.clip.joints[l].parent.filter(|p| *p != partner);
         let reach = above.map_or(0.0, |p| (theirs[l] - theirs[p]).norm());
         let collars = if reach > NO_BONE { left.1.bone.norm() / reach } else { f64::INFINITY };
