@@ -2,7 +2,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::pair::{Aim, Base, Hips, Pair, Shoulders};
+use super::pair::{Aim, Base, Lay, Pair, Shoulders};
 use super::swing;
 use crate::clip::Clip;
 
@@ -42,8 +42,8 @@ impl Pair<'_> {
                 Base::Follow(_) => {}
             }
         }
-        if let Some(hips) = &self.hips {
-            lay(hips, pose, &mut worlds[hips.joint]);
+        for carrier in &self.lays {
+            lay(carrier, pose, &mut worlds[carrier.joint]);
         }
         for aim in &self.aims {
             point(aim, pose, &mut worlds);
@@ -82,12 +82,13 @@ impl Pair<'_> {
     }
 }
 
-/// Lays the pelvis along the line of the hips. A bone of the spine that is rigid in it then decides how far it is tipped.
-fn lay(hips: &Hips, pose: &Pose, world: &mut UnitQuaternion<f64>) {
-    let [left, right] = hips.from;
+/// Lays the pelvis along the line of the hips, or a chest along that of the shoulders. The bone that is rigid in it then decides how far
+/// it is tipped about that line.
+fn lay(carrier: &Lay, pose: &Pose, world: &mut UnitQuaternion<f64>) {
+    let [left, right] = carrier.from;
     let line = pose.positions[left] - pose.positions[right];
-    *world = swing(&(*world * hips.line), &line) * *world;
-    let Some((bone, [from, to])) = hips.spine else { return };
+    *world = swing(&(*world * carrier.line), &line) * *world;
+    let Some((bone, [from, to])) = carrier.bone else { return };
     let Some(axis) = line.try_normalize(1e-9) else { return };
     let across = |v: Vector3<f64>| v - axis * v.dot(&axis);
     let (own, theirs) = (across(*world * bone), across(pose.positions[to] - pose.positions[from]));

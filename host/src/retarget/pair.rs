@@ -78,13 +78,14 @@ pub(super) struct Shoulders {
     pub scale: f64,
 }
 
-/// The pelvis: its line of hips, and the bone of the spine if it is rigid.
+/// A joint that carries a pair of limbs: the pelvis, and a chest without collars. The line of hips or shoulders in it, and the bone of the
+/// spine, the neck or the head that is rigid in it.
 #[derive(Clone, Debug)]
-pub(super) struct Hips {
+pub(super) struct Lay {
     pub joint: usize,
     pub line: Vector3<f64>,
     pub from: [usize; 2],
-    pub spine: Option<(Vector3<f64>, [usize; 2])>,
+    pub bone: Option<(Vector3<f64>, [usize; 2])>,
 }
 
 /// Two skeletons, and all that does not change from frame to frame.
@@ -92,7 +93,7 @@ pub(super) struct Pair<'r> {
     pub rig: &'r Skeleton,
     pub bases: Vec<Base>,
     pub aims: Vec<Aim>,
-    pub hips: Option<Hips>,
+    pub lays: Vec<Lay>,
     pub shoulders: Option<Shoulders>,
     /// The clip's stance, inverted: what a joint has turned by since is `G * rested`.
     pub rested: Vec<UnitQuaternion<f64>>,
@@ -126,7 +127,8 @@ impl<'a, 'r> Builder<'a, 'r> {
         let mut partner = vec![None; rig.skeleton.len()];
         for canonical in Canonical::ALL {
             if let (Some(to), Some(from)) = (rig.map.joint(canonical), map.joint(canonical)) {
-                partner[to] = Some(from);
+                // A Kinect's chest is its neck: it turns as a chest.
+                partner[to] = partner[to].or(Some(from));
             }
         }
         partner[0] = partner[0].or(map.joint(Pelvis));
@@ -176,7 +178,8 @@ impl<'a, 'r> Builder<'a, 'r> {
         let pelvis = self.rig.map.joint(Pelvis).unwrap_or(0);
         let mut aimed = vec![false; n];
         aimed[pelvis] = true;
-        let mut spine = None;
+        let (mut spine, mut head) = (None, None);
+        let rigid = self.collar(LShoulder).is_none() && self.collar(RShoulder).is_none();
         for joint in 0..n {
             let (Some(partner), Some(above)) = (self.partner[joint], self.above(joint)) else { continue };
             let trunk = [Spine, Chest, Neck, Head];
@@ -191,8 +194,12 @@ impl<'a, 'r> Builder<'a, 'r> {
             }
             let nodes: Vec<usize> = [above].into_iter().chain(between).chain([joint]).collect();
             let chain: Vec<_> = nodes.windows(2).map(|w| (w[0], self.bone(w[0], w[1]))).collect();
+            let carries = rigid && self.is(above, &[Chest]);
             if above == pelvis && chain.len() == 1 && spine.is_none() {
                 spine = Some((chain[0].1, [from, partner]));
+            } else if carries && chain.len() == 1 && self.is(joint, &[Head]) {
+                let neck = self.map.joint(Neck).filter(|neck| self.is(above, &[Neck]) && *neck != partner);
+                head = Some((chain[0].1, [neck.unwrap_or(from), partner]));
             } else {
                 // The pelvis lies along the hips, the chest carries the shoulders: they do not follow what only the next joint does.
                 let fixed = std::mem::replace(&mut aimed[above], true) || self.is(above, &[Chest]);
@@ -238,9 +245,14 @@ impl<'a, 'r> Builder<'a, 'r> {
                 }
             }
         };
+        let chest = self.rig.map.joint(Chest).filter(|_| rigid);
+        let lays = [
+            self.lay(pelvis, [LHip, RHip], spine),
+            chest.and_then(|chest| self.lay(chest, [LShoulder, RShoulder], head)),
+        ];
         Pair {
             bases: (0..n).map(base).collect(),
-            hips: self.hips(pelvis, spine),
+            lays: lays.into_iter().flatten().collect(),
             shoulders: self.shoulders(),
             rested: self.theirs.worlds.iter().map(UnitQuaternion::inverse).collect(),
             rig: &self.rig.skeleton,
@@ -283,12 +295,11 @@ impl<'a, 'r> Builder<'a, 'r> {
         Some((self.own.axes[at].unwrap_or_else(|| BENDS[at].1.into()), self.theirs.axes[at]?))
     }
 
-    fn hips(&self, pelvis: usize, spine: Option<(Vector3<f64>, [usize; 2])>) -> Option<Hips> {
-        let own = [LHip, RHip].map(|hip| self.rig.map.joint(hip));
-        let from = [LHip, RHip].map(|hip| self.map.joint(hip));
+    fn lay(&self, joint: usize, pair: [Canonical; 2], bone: Option<(Vector3<f64>, [usize; 2])>) -> Option<Lay> {
+        let own = pair.map(|side| self.rig.map.joint(side).filter(|side| self.above(*side) == Some(joint)));
+        let from = pair.map(|side| self.map.joint(side));
         let ([Some(l), Some(r)], [Some(left), Some(right)]) = (own, from) else { return None };
-        let line = self.bone(pelvis, l) - self.bone(pelvis, r);
-        Some(Hips { joint: pelvis, line, from: [left, right], spine })
+        Some(Lay { joint, line: self.bone(joint, l) - self.bone(joint, r), from: [left, right], bone })
     }
 
     /// Nothing where the shoulders are rigid in the chest.
