@@ -5,7 +5,7 @@ mod bodies;
 
 use std::path::{Path, PathBuf};
 
-use bodies::{Measured, measure, share};
+use bodies::{Measured, hinge, measure, share};
 use kinesic_host::clip::{Canonical, ReadOptions};
 use kinesic_host::prepare::Source;
 
@@ -98,6 +98,28 @@ fn every_body_on_every_other() {
         // No flips: nothing turns much faster than in the clip.
         let [fastest, own] = measured.fastest;
         assert!(fastest < 1.2 * own + 6.0, "{pair}: {fastest} degrees a frame, {own} in the clip");
+    }
+}
+
+/// Legs are twisted about themselves as the rig's own motions twist them: knees bend about the same axes. The clips' rest poses say
+/// nothing of that, the recordings do. (Elbows turn about the forearm as well, so that they have no axis to compare.)
+#[test]
+fn knees_bend_about_the_axes_of_the_rig() {
+    let Some(folder) = data() else { return };
+    let read = |name: &str| Source::read(&folder.join(name), &ReadOptions::default()).unwrap();
+    let limbs = [Canonical::LKnee, Canonical::RKnee];
+    let axes = |source: &Source| limbs.map(|j| hinge(&source.clip, source.map.joint(j).unwrap()));
+    let from = ["bandai1/walk_normal_001.bvh", "bandai2/walk_normal_001.bvh", "cmu24cc/06_12.bvh"].map(read);
+    for to in ["xia/neutral_01_000.bvh", "cmu31/07_01.bvh", "cmu43daz/14_07.bvh"].map(read) {
+        let (rig, native) = (to.rig().unwrap(), axes(&to));
+        for source in &from {
+            let clip = source.on_rig(&rig, 30.0).unwrap();
+            let found = axes(&Source::new("moved", clip, rig.map.clone()));
+            for ((limb, a), b) in limbs.iter().zip(native).zip(found) {
+                let Some(apart) = a.zip(b).map(|(a, b)| a.angle(&b).to_degrees()) else { continue };
+                assert!(apart < 20.0, "{} on {}: {limb:?} {apart}", source.name(), to.name());
+            }
+        }
     }
 }
 

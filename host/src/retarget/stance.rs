@@ -88,16 +88,20 @@ impl Stance {
         let way = |from: Canonical, to: Canonical| {
             Some((stance.positions[map.joint(to)?] - stance.positions[map.joint(from)?]).normalize())
         };
-        let arm = |shoulder, elbow, wrist, out: f64| {
-            let (upper, lower) = (way(shoulder, elbow)?, way(elbow, wrist)?);
-            let (outward, down) = (out * upper.x, -upper.y);
-            Some(upper.dot(&lower) > 0.7 && outward > -0.3 && (outward > 0.5 || down > 0.5))
+        // What a map does not name says nothing.
+        let arm = |shoulder, elbow, wrist, side: f64| {
+            way(shoulder, elbow).zip(way(elbow, wrist)).is_none_or(|(upper, lower)| {
+                let (out, down) = (side * upper.x, -upper.y);
+                upper.dot(&lower) > 0.7 && out > -0.3 && (out > 0.5 || down > 0.5)
+            })
         };
-        let upright = way(Pelvis, Head)?.y > 0.7
-            && way(LHip, LAnkle)?.y < -0.7
-            && way(RHip, RAnkle)?.y < -0.7
-            && arm(LShoulder, LElbow, LWrist, 1.0)?
-            && arm(RShoulder, RElbow, RWrist, -1.0)?;
+        let trunk = [Head, Neck, Chest, Spine].into_iter().find_map(|top| way(Pelvis, top));
+        let leg = |hip, knee, ankle| way(hip, ankle).or(way(hip, knee)).is_none_or(|leg| leg.y < -0.7);
+        let upright = trunk.is_none_or(|trunk| trunk.y > 0.7)
+            && leg(LHip, LKnee, LAnkle)
+            && leg(RHip, RKnee, RAnkle)
+            && arm(LShoulder, LElbow, LWrist, 1.0)
+            && arm(RShoulder, RElbow, RWrist, -1.0);
         upright.then_some(Self { rests: true, ..stance })
     }
 

@@ -100,6 +100,12 @@ fn fastest(clip: &Clip, map: &JointMap) -> f64 {
     pairs.fold(0.0, f64::max)
 }
 
+/// The axis about which a joint turns in its parent over a clip; none where it hardly turns.
+pub fn hinge(clip: &Clip, joint: usize) -> Option<Vector3<f64>> {
+    let turns = (0..clip.frames()).map(|frame| clip.pose(frame)[joint].scaled_axis());
+    turns.filter(|turn| turn.norm() > 0.35).sum::<Vector3<f64>>().try_normalize(1.0)
+}
+
 /// What is measured of one clip on one rig.
 pub struct Measured {
     /// Class, mean, 95th percentile and maximum of the angle, degrees.
