@@ -48,8 +48,9 @@ impl Stance {
 
     /// The pose at which a trained rig's coordinates are 0.
     fn trained(rig: &Rig) -> Option<Self> {
-        let turn = |[i, j, k, w]: [f32; 4]| UnitQuaternion::new_normalize(Quaternion::new(w, i, j, k).cast::<f64>());
-        let mut locals: Vec<_> = rig.joint_coordinates().iter().map(|joint| turn(joint.reference)).collect();
+        let turn = |[i, j, k, w]: [f32; 4]| UnitQuaternion::try_new(Quaternion::new(w, i, j, k).cast(), 1e-9);
+        let mut locals: Vec<_> =
+            rig.joint_coordinates().iter().map(|joint| turn(joint.reference).unwrap_or_default()).collect();
         if locals.iter().all(|local| local.angle() < 1e-3) {
             return None;
         }
