@@ -89,10 +89,10 @@ fn every_body_on_every_other() {
             };
             assert!(*most < bound, "{pair}: {class} {most} degrees off");
         }
-        assert!(measured.under[0] < 0.01, "{pair}: {} m under the floor", measured.under[0]);
-        // One recording of a Kinect has feet that point steeply down for a second.
-        let high = if BODIES[*from].0 == "kindergator" { 0.1 } else { 0.05 };
-        assert!(measured.standing[0].abs() < high, "{pair}: stands {} m above the floor", measured.standing[0]);
+        // One recording of a Kinect has feet that point steeply down for a second: the whole clip is not lifted for them.
+        let deep = if BODIES[*from].0 == "kindergator" { 0.065 } else { 0.01 };
+        assert!(measured.under[0] < deep, "{pair}: {} m under the floor", measured.under[0]);
+        assert!(measured.standing[0].abs() < 0.05, "{pair}: stands {} m above the floor", measured.standing[0]);
         let width = measured.shoulders[1] / native;
         assert!((0.87..1.12).contains(&width), "{pair}: shoulders {width} of the rig's");
         // No flips: nothing turns much faster than in the clip.

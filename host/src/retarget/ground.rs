@@ -12,6 +12,8 @@ const FLOOR: f64 = 0.05;
 const STANDS: f64 = 0.02;
 /// Feet are no deeper under the floor, m.
 const UNDER: f64 = 0.008;
+/// A clip is lifted no further for feet that are deeper, m: what needs more is a fault of the recording.
+const LIFTED: f64 = 0.035;
 
 /// How much longer the rig's legs are. Legs that differ by less than a tenth of a millimetre in a metre are the same legs.
 fn longer(clip: &Clip, map: &JointMap, rig: &Rig) -> f64 {
@@ -60,7 +62,7 @@ fn lift(before: &[f64], after: &[f64], scale: f64) -> f64 {
     let above = |before: &f64| (before - floor).max(0.0) * scale;
     let lift = share(stands.map(|(before, after)| floor + above(before) - after).collect(), 0.5);
     let least = after.iter().copied().fold(f64::INFINITY, f64::min);
-    let lift = lift.max(floor - UNDER - least);
+    let lift = lift.max((floor - UNDER - least).min(lift + LIFTED));
     if lift.is_finite() { lift } else { 0.0 }
 }
 

@@ -52,7 +52,8 @@ pub enum RetargetError {
 /// Shoulders stay as far apart as the rig's, and move in the chest as the clip's do.
 ///
 /// Where the skeletons differ, the middle of the hips takes the path of the clip's, scaled by the length of the legs from the clip's floor
-/// up. One height is then added for the whole clip, such that feet stand on the clip's floor when the clip's feet do.
+/// up. One height is then added for the whole clip, such that feet stand on the clip's floor when the clip's feet do, and none is more than 1 cm
+/// under it (where that lifts the clip by 3.5 cm at most).
 pub fn retarget(clip: &Clip, map: &JointMap, rig: &Rig) -> Result<Clip, RetargetError> {
     let mut notes = clip.notes.clone();
     let same = alike::same_joints(&clip.skeleton, &rig.skeleton);
