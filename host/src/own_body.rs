@@ -8,7 +8,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::clip::{Canonical, Clip};
 use crate::prepare::Source;
-use crate::retarget::{leg_scale, same_joints};
+use crate::retarget::{longer, same_joints};
 use crate::rig::Rig;
 
 /// The joints of a clip's skeleton that answer those of a rig.
@@ -31,7 +31,7 @@ impl<'a> OwnBody<'a> {
         };
         pairs.sort_unstable();
         pairs.dedup_by_key(|(own, _)| *own);
-        Self { clip, pairs, scale: leg_scale(clip, &source.map, rig) }
+        Self { clip, pairs, scale: longer(clip, &source.map, rig) }
     }
 
     /// The clip with what happened between `before` and `after`, both on the rig, at one rate, frame for frame. Cost: the world rotations
