@@ -50,7 +50,7 @@ fn lower(head: &[u8]) -> String {
     String::from_utf8_lossy(&letters).trim_start().to_ascii_lowercase()
 }
 
-fn is_bvh(head: &[u8]) -> bool {
+pub(super) fn is_bvh(head: &[u8]) -> bool {
     lower(head).starts_with("hierarchy")
 }
 
