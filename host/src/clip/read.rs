@@ -149,9 +149,6 @@ fn describe(bytes: &[u8]) -> String {
     if bytes.is_empty() {
         return "an empty file".into();
     }
-    if bytes.starts_with(b"Kaydara FBX Binary") || bytes.starts_with(b"; FBX") {
-        return "FBX, which is not read: convert it with Blender (docs/your-clips.md has the line)".into();
-    }
     let line = bytes.split(|&b| b == b'\n').next().unwrap_or(&[]);
     match std::str::from_utf8(line) {
         Ok(text) if !text.contains('\0') => {

@@ -45,12 +45,8 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum()
 }
 
-/// Rotation by `degrees` about axis 0 (X), 1 (Y) or 2 (Z).
-pub(super) fn about_axis(axis: usize, degrees: f64) -> UnitQuaternion<f64> {
-    of_half(axis, half(degrees))
-}
-
-fn of_half(axis: usize, (sin, cos): (f64, f64)) -> UnitQuaternion<f64> {
+/// Rotation about axis 0 (X), 1 (Y) or 2 (Z), by twice the angle of this sine and cosine.
+fn about_axis(axis: usize, (sin, cos): (f64, f64)) -> UnitQuaternion<f64> {
     let mut v = Vector3::zeros();
     if let Some(component) = v.get_mut(axis) {
         *component = sin;
@@ -58,7 +54,7 @@ fn of_half(axis: usize, (sin, cos): (f64, f64)) -> UnitQuaternion<f64> {
     UnitQuaternion::new_unchecked(Quaternion::from_parts(cos, v))
 }
 
-/// The rotation times [`about_axis`], to the bit, with half of the products: the others are 0, and matter for the sign of a 0 alone.
+/// The rotation times one by `degrees` about axis 0 (X), 1 (Y) or 2 (Z), as [`about_axis`] makes it to the bit, with half of the products: the others are 0, and matter for the sign of a 0 alone.
 pub(super) fn then_about_axis(rotation: &UnitQuaternion<f64>, axis: usize, degrees: f64) -> UnitQuaternion<f64> {
     let (s, c) = half(degrees);
     let [x, y, z, w] = rotation.coords.data.0[0];
@@ -68,7 +64,7 @@ pub(super) fn then_about_axis(rotation: &UnitQuaternion<f64>, axis: usize, degre
         _ => [x * c + y * s, y * c - x * s, w * s + z * c, w * c - z * s],
     };
     if product.contains(&0.0) {
-        return rotation * of_half(axis, (s, c));
+        return rotation * about_axis(axis, (s, c));
     }
     UnitQuaternion::new_unchecked(Quaternion::from_vector(product.into()))
 }
@@ -108,7 +104,7 @@ mod tests {
             let mut whole = UnitQuaternion::identity();
             let mut short = UnitQuaternion::identity();
             for (axis, degrees) in turns {
-                whole *= about_axis(axis, degrees);
+                whole *= about_axis(axis, half(degrees));
                 short = then_about_axis(&short, axis, degrees);
                 prop_assert_eq!(bits(&whole), bits(&short));
             }

@@ -8,6 +8,8 @@ const POWERS: [f64; 23] = [
     1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20,
     1e21, 1e22,
 ];
+/// By how much a number grows when so many digits, at most seven, are put behind it.
+const WHOLE: [u64; 8] = [1, 10, 100, 1000, 10_000, 100_000, 1_000_000, 10_000_000];
 /// Whole numbers up to here are exact.
 const EXACT: u64 = 1 << 53;
 /// Digits that cannot overflow a u64.
@@ -18,11 +20,60 @@ pub(super) fn is_space(byte: u8) -> bool {
     matches!(byte, b' ' | b'\t' | b'\n' | b'\x0c' | b'\r')
 }
 
-/// The word at the start as a finite number, and what comes after it.
-pub(super) fn number(text: &[u8]) -> Option<(f64, &[u8])> {
-    if let Some((value, rest)) = short(text) {
-        return Some((value, rest));
+/// The word at `at` as a finite number, and where it ends.
+pub(super) fn number(text: &[u8], at: usize) -> Option<(f64, usize)> {
+    common(text, at).or_else(|| {
+        let word = text.get(at..)?;
+        let (value, rest) = short(word).or_else(|| any(word))?;
+        Some((value, text.len() - rest.len()))
+    })
+}
+
+/// A number as nearly all are: up to eight digits, a point, up to seven digits. Not at the very end of the text.
+#[inline(always)]
+fn common(text: &[u8], mut at: usize) -> Option<(f64, usize)> {
+    let negative = *text.get(at)? == b'-';
+    at += usize::from(negative);
+    let start = at;
+    let mut all = 0u64;
+    while let Some(digit) = text.get(at).map(|byte| byte.wrapping_sub(b'0')).filter(|digit| *digit < 10) {
+        all = all.wrapping_mul(10).wrapping_add(u64::from(digit));
+        at += 1;
     }
+    let (before, mut after) = (at - start, 0);
+    if text.get(at) == Some(&b'.') {
+        at += 1;
+        let (part, count) = leading(u64::from_le_bytes(*text.get(at..at + 8)?.first_chunk()?));
+        all = all.wrapping_mul(*WHOLE.get(count)?).wrapping_add(part);
+        at += count;
+        after = count;
+    }
+    if before > 8 || before + after == 0 || text.get(at).is_some_and(|byte| !is_space(*byte)) {
+        return None;
+    }
+    let size = all as f64 / POWERS.get(after)?;
+    Some((if negative { -size } else { size }, at))
+}
+
+/// The number that the first of eight bytes are, and how many of them are digits: without a branch on how many there are.
+#[inline(always)]
+fn leading(eight: u64) -> (u64, usize) {
+    let every = |byte: u8| u64::from_le_bytes([byte; 8]);
+    let cells = eight ^ every(b'0');
+    // The high bit of each byte that is no digit; a carry only reaches bytes behind the first of these.
+    let other = (cells.wrapping_add(every(0x76)) | cells) & every(0x80);
+    let count = other.trailing_zeros() / 8;
+    // Zeros in front: the last digit is in the highest byte.
+    let cells = cells.checked_shl(64 - 8 * count).unwrap_or(0) & every(0x0f);
+    // Digits to pairs, pairs to fours, fours to eight.
+    let pairs = cells.wrapping_mul(1 + (10 << 8)) >> 8;
+    let fours = (pairs & 0x00ff_00ff_00ff_00ff).wrapping_mul(1 + (100 << 16)) >> 16;
+    let all = (fours & 0x0000_ffff_0000_ffff).wrapping_mul(1 + (10_000 << 32)) >> 32;
+    (all, count as usize)
+}
+
+/// Whatever [`str::parse`] takes and is finite, and what comes after it.
+fn any(text: &[u8]) -> Option<(f64, &[u8])> {
     let end = text.iter().position(|b| is_space(*b)).unwrap_or(text.len());
     let (word, rest) = text.split_at_checked(end)?;
     let value = std::str::from_utf8(word).ok()?.parse::<f64>().ok().filter(|x| x.is_finite())?;
@@ -89,7 +140,11 @@ mod tests {
     /// What the whole word is to [`str::parse`], and to us.
     fn both(word: &str) -> [Option<u64>; 2] {
         let std = word.parse::<f64>().ok().filter(|x| x.is_finite()).map(f64::to_bits);
-        let own = number(word.as_bytes()).filter(|(_, rest)| rest.is_empty()).map(|(x, _)| x.to_bits());
+        let whole = |text: &str| number(text.as_bytes(), 0).filter(|n| n.1 == word.len()).map(|n| n.0.to_bits());
+        let own = whole(word);
+        // Within a text a word is read another way than at its end.
+        assert_eq!(own, whole(&format!("{word} 12345678")), "{word}");
+        assert_eq!(own, whole(&format!("{word}\r\n-0.1234567 ")), "{word}");
         [std, own]
     }
 
@@ -148,9 +203,9 @@ mod tests {
             let [std, own] = both(word);
             assert_eq!(std, own, "{word}");
         }
-        assert_eq!(number(b"1.5 2"), Some((1.5, b" 2".as_slice())));
-        assert_eq!(number(b"-1e1\r\n"), Some((-10.0, b"\r\n".as_slice())));
-        assert_eq!(number(b"1\x0b"), None, "no white space between words");
+        assert_eq!(number(b"1.5 2", 0), Some((1.5, 3)));
+        assert_eq!(number(b" -1e1\r\n", 1), Some((-10.0, 5)));
+        assert_eq!(number(b"1\x0b", 0), None, "no white space between words");
     }
 
     proptest! {

@@ -73,31 +73,35 @@ struct Layout<'a> {
 
 impl Layout<'_> {
     /// The frames of whole lines.
-    fn frames(&self, mut text: &[u8]) -> Option<Rows> {
-        let lines = text.iter().filter(|b| **b == b'\n').count();
-        let mut rows = Rows::new(self.joints, lines + 1);
+    fn frames(&self, text: &[u8]) -> Option<Rows> {
+        // All lines are about as long as the first.
+        let first = text.iter().position(|b| *b == b'\n').unwrap_or(text.len());
+        let mut rows = Rows::new(self.joints, text.len() * 9 / (8 * (first + 1)) + 2);
         let mut values = Vec::with_capacity(self.keep.len());
+        let mut at = 0;
         loop {
-            let byte = text.first().copied();
-            if byte.is_none_or(|b| b == b'\n') {
-                if values.len() == self.keep.len() {
-                    let kept = values.iter().zip(self.keep).filter(|(_, keep)| **keep);
-                    rows.push(self.joints, kept.map(|(value, _)| *value));
-                } else if !values.is_empty() {
-                    return None;
+            match text.get(at) {
+                Some(b' ') => at += 1,
+                None | Some(b'\n') => {
+                    if values.len() == self.keep.len() {
+                        let kept = values.iter().zip(self.keep).filter(|(_, keep)| **keep);
+                        rows.push(self.joints, kept.map(|(value, _)| *value));
+                    } else if !values.is_empty() {
+                        return None;
+                    }
+                    values.clear();
+                    if at >= text.len() {
+                        return Some(rows);
+                    }
+                    at += 1;
                 }
-                values.clear();
-                if byte.is_none() {
-                    return Some(rows);
+                Some(byte) if is_space(*byte) => at += 1,
+                Some(_) => {
+                    let (value, end) = number(text, at)?;
+                    values.push(value);
+                    at = end;
                 }
             }
-            if byte.is_some_and(is_space) {
-                text = text.get(1..)?;
-                continue;
-            }
-            let (value, rest) = number(text)?;
-            values.push(value);
-            text = rest;
         }
     }
 }

@@ -11,8 +11,8 @@ use base64::prelude::BASE64_STANDARD;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::tracks::{Tracks, rate, tracks};
-use crate::clip::bvh::{MAX_JOINTS, orient};
-use crate::clip::{Clip, Joint, JointMap, ReadError, ReadOptions, Skeleton, measure};
+use crate::clip::bvh::MAX_JOINTS;
+use crate::clip::{Clip, Joint, ReadError, ReadOptions, Skeleton, settle};
 use crate::files;
 
 /// Most frames that are made of keys.
@@ -23,21 +23,8 @@ const NODE: f64 = 32.0;
 /// Reads a file of text or of the binary kind; the path is for messages, and its folder holds the buffers that a text file names.
 pub fn read(bytes: &[u8], path: &Path, options: &ReadOptions) -> Result<Clip, ReadError> {
     let refuse = |fault: String| ReadError::Gltf { path: path.into(), fault };
-    let map_error = |error| ReadError::Map { path: path.into(), error };
-    let mut clip = parse(bytes, path.parent()).map_err(refuse)?;
-    if let Some(unit) = options.units {
-        let factor = unit.metres();
-        clip.root.iter_mut().for_each(|p| *p *= factor);
-        clip.skeleton.joints.iter_mut().for_each(|j| j.offset *= factor);
-        clip.notes.push(format!("Units: {unit}, as given."));
-    }
-    let map = JointMap::choose(&clip.skeleton, options.map.as_ref()).map_err(map_error)?;
-    measure::note_names(&mut clip, map.as_ref(), options);
-    orient::turn(&mut clip, map.as_ref(), options);
-    orient::note_floor(&mut clip);
-    measure::note_size(&mut clip, map.as_ref());
-    clip.make_signs_continuous();
-    Ok(clip)
+    let clip = parse(bytes, path.parent()).map_err(refuse)?;
+    settle::in_metres(clip, path, options)
 }
 
 /// Parses the bytes; `folder` holds the buffers that a text file names.
@@ -58,7 +45,7 @@ pub fn parse(bytes: &[u8], folder: Option<&Path>) -> Result<Clip, String> {
     let size = bytes.len() + buffers.iter().map(Vec::len).sum::<usize>();
     // What is read is at most 20 times the file, and 200 MB: keys are rows of four numbers, frames have every node.
     let allowed = 20.0 * size as f64 + 2e8;
-    let tracks = tracks(&animation, &buffers, (allowed / 16.0) as usize)?;
+    let tracks = tracks(&file, &animation, &buffers, (allowed / 16.0) as usize)?;
     let nodes = Nodes::new(&file, &tracks)?;
     let (times, end) = tracks.times();
     if end <= 0.0 {

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use gltf::accessor::{DataType, Dimensions};
 use gltf::animation::{Interpolation, Property};
+use gltf::json::validation::Checked;
 
 use super::numbers::rows;
 
@@ -50,11 +51,24 @@ impl Tracks {
 }
 
 /// Reads the keys of an animation; at most `room` of them: many channels may share the same bytes.
-pub(super) fn tracks(animation: &gltf::Animation, buffers: &[Vec<u8>], room: usize) -> Result<Tracks, String> {
+pub(super) fn tracks(
+    file: &gltf::Gltf,
+    animation: &gltf::Animation,
+    buffers: &[Vec<u8>],
+    room: usize,
+) -> Result<Tracks, String> {
+    let root = file.document.as_json();
+    let targets = root.animations.get(animation.index()).into_iter().flat_map(|a| &a.channels).map(|c| &c.target);
+    let nodes = root.nodes.len();
     let mut tracks = Tracks::default();
     let mut keys = 0usize;
-    for channel in animation.channels() {
-        let rotation = match channel.target().property() {
+    for (channel, target) in animation.channels().zip(targets) {
+        // The crate does not check targets, and panics at what it does not know.
+        let Checked::Valid(property) = &target.path else { continue };
+        if target.node.value() >= nodes {
+            return Err(format!("a channel moves node {}, and there are {nodes} nodes", target.node.value()));
+        }
+        let rotation = match property {
             Property::Translation => false,
             Property::Rotation => true,
             _ => continue,
@@ -85,7 +99,7 @@ pub(super) fn tracks(animation: &gltf::Animation, buffers: &[Vec<u8>], room: usi
             return Err("the keys of a channel are not in order of time, or not one value each. Export it again".into());
         }
         let of = if rotation { &mut tracks.turns } else { &mut tracks.places };
-        of.insert(channel.target().node().index(), Track { times, values, kind });
+        of.insert(target.node.value(), Track { times, values, kind });
     }
     Ok(tracks)
 }
