@@ -114,10 +114,10 @@ lint() {
     step "lint: documentation" env RUSTDOCFLAGS="-D warnings" cargo doc --release --workspace --no-deps --locked
 }
 
-# Tests that need the real clips name themselves in a file where these are missing.
+# Tests that need the real clips, or Blender, name themselves in a file where these are missing.
 skipped() {
     [ -s "$KINESIC_SKIPPED" ] || return 0
-    echo "SKIPPED for want of the real clips: $(wc -l <"$KINESIC_SKIPPED") tests"
+    echo "SKIPPED for want of the real clips or of a program: $(wc -l <"$KINESIC_SKIPPED") tests"
     sed 's/^/  /' "$KINESIC_SKIPPED"
 }
 
@@ -164,6 +164,7 @@ bench_peers() {
     "$work/bin/python" benches/peers/emotion.py target/release/host-jobs "$work/jobs"
     "$work/bin/python" benches/peers/components.py target/release/components-bench "$work/jobs"
     "$work/bin/python" benches/peers/faces.py target/release/kinesic "$work/faces"
+    "$work/bin/python" benches/peers/bvh.py target/release/kinesic "${KINESIC_DATA:-../shared/data}/cmu31/01_01.bvh" "$work/clips"
 }
 
 # Coverage by the compiler's own pass, on the stable toolchain; without a sanitizer, since nothing here is unsafe code of ours.
@@ -179,7 +180,7 @@ fuzz() {
         cargo build --release --locked --manifest-path fuzz/Cargo.toml --target "$host"
     mkdir -p fuzz/artifacts fuzz/target/corpus
     log=$(mktemp)
-    for target in pack bvh csv map urdf robot servos moves limbs; do
+    for target in pack bvh gltf fbx csv map urdf robot servos moves limbs; do
         # What is new goes to fuzz/target, so that later runs go on from there and the repository stays small.
         mkdir -p "fuzz/target/corpus/$target" "fuzz/artifacts/$target" "fuzz/regressions/$target"
         if "fuzz/target/$host/release/$target" -max_total_time="$seconds" -timeout=20 -rss_limit_mb=4096 -print_final_stats=1 \

@@ -1,7 +1,10 @@
 //! Clips and skeleton maps.
 
+use std::path::Path;
+
 use kinesic_host::clip::map::suggest;
-use kinesic_host::clip::{Clip, JointMap, ReadOptions, SkeletonMap, Unit, UpAxis, WriteOptions, bvh as reader, kinect};
+use kinesic_host::clip::{Clip, JointMap, ReadOptions, SkeletonMap, Unit, UpAxis, WriteOptions};
+use kinesic_host::clip::{bvh as reader, fbx as scene, gltf as binary, kinect};
 use kinesic_host::gait;
 use kinesic_host::retarget::retarget;
 use kinesic_host::rig::Rig;
@@ -17,6 +20,25 @@ pub fn bvh(data: &[u8]) {
     let again =
         reader::parse(text.as_bytes(), &options).unwrap_or_else(|error| panic!("what we write is refused: {error}"));
     assert_eq!(again.frames(), clip.frames());
+}
+
+/// Reads the bytes as glTF, of text or of the binary kind, with no folder beside them.
+pub fn gltf(data: &[u8]) {
+    let Ok(clip) = binary::read(data, Path::new(""), &ReadOptions::default()) else { return };
+    assert_eq!(clip.rotations.len(), clip.frames() * clip.skeleton.len());
+    used(&clip);
+    // What is written is read again.
+    let Ok(bytes) = clip.to_glb() else { return };
+    // Two keys less than the shortest step apart are one time in f32.
+    let Ok(again) = binary::parse(&bytes, None) else { return };
+    assert_eq!(again.skeleton.len(), clip.skeleton.len());
+}
+
+/// Reads the bytes as FBX, of text or of the binary kind.
+pub fn fbx(data: &[u8]) {
+    let Ok(clip) = scene::read(data, Path::new(""), &ReadOptions::default()) else { return };
+    assert_eq!(clip.rotations.len(), clip.frames() * clip.skeleton.len());
+    used(&clip);
 }
 
 /// Reads the bytes as a Kinect recording.

@@ -11,7 +11,7 @@ mod machines;
 mod packs;
 mod robots;
 
-pub use clips::{bvh, csv, map};
+pub use clips::{bvh, csv, fbx, gltf, map};
 pub use machines::{limbs, moves, robot, servos};
 pub use packs::pack;
 pub use robots::urdf;

@@ -19,13 +19,21 @@ pub fn data(test: &str) -> Option<PathBuf> {
     }
     let message = format!("{test}: no manifest.tsv in {} (set KINESIC_DATA)", folder.display());
     assert!(std::env::var("CI").as_deref() != Ok("true"), "{message}");
+    skipped(&message);
+    None
+}
+
+/// Says that a test is skipped, and why: a line on standard error, and a line in the file `KINESIC_SKIPPED`.
+///
+/// # Panics
+/// Where that file cannot be written.
+pub fn skipped(message: &str) {
     eprintln!("SKIPPED {message}");
     if let Ok(list) = std::env::var("KINESIC_SKIPPED") {
         let list = std::fs::OpenOptions::new().append(true).create(true).open(list);
         list.and_then(|mut list| writeln!(list, "{message}"))
             .expect("KINESIC_SKIPPED names a file that can be written");
     }
-    None
 }
 
 /// The lines of a tab-separated file with a header, as maps from column to cell.

@@ -66,6 +66,14 @@ pub enum ReadError {
         /// Where and how.
         fault: KinectFault,
     },
+    /// An FBX file is broken, or holds no skeleton in motion.
+    #[error("{}: {fault}", path.display())]
+    Fbx {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        fault: String,
+    },
     /// A glTF file is broken, or holds no skeleton in motion.
     #[error("{}: {fault}", path.display())]
     Gltf {

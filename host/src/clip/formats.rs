@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::error::ReadError;
 use super::read::ReadOptions;
-use super::{Clip, bvh, gltf, kinect};
+use super::{Clip, bvh, fbx, gltf, kinect};
 
 /// One kind of file.
 pub struct Reader {
@@ -19,7 +19,7 @@ pub struct Reader {
 }
 
 /// All of them.
-pub static READERS: [Reader; 3] = [
+pub static READERS: [Reader; 4] = [
     Reader {
         name: "BVH",
         extensions: &["bvh"],
@@ -28,6 +28,7 @@ pub static READERS: [Reader; 3] = [
     },
     Reader { name: "table of joint positions (Kinect)", extensions: &["csv"], sniff: is_kinect, parse: kinect::read },
     Reader { name: "glTF", extensions: &["glb", "gltf"], sniff: is_gltf, parse: gltf::read },
+    Reader { name: "FBX", extensions: &["fbx"], sniff: is_fbx, parse: fbx::read },
 ];
 
 /// The reader that knows the first bytes of a file.
@@ -50,7 +51,7 @@ fn lower(head: &[u8]) -> String {
     String::from_utf8_lossy(&letters).trim_start().to_ascii_lowercase()
 }
 
-fn is_bvh(head: &[u8]) -> bool {
+pub(super) fn is_bvh(head: &[u8]) -> bool {
     lower(head).starts_with("hierarchy")
 }
 
@@ -62,4 +63,8 @@ fn is_kinect(head: &[u8]) -> bool {
 
 fn is_gltf(head: &[u8]) -> bool {
     head.starts_with(b"glTF") || (lower(head).starts_with('{') && lower(head).contains("\"asset\""))
+}
+
+fn is_fbx(head: &[u8]) -> bool {
+    head.starts_with(b"Kaydara FBX Binary") || head.starts_with(b"; FBX")
 }

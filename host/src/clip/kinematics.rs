@@ -15,7 +15,19 @@ impl Skeleton {
     ///
     /// `p_j = p_parent + G_parent offset_j`, `G_j = G_parent R_j`. One quaternion product and one rotation a joint.
     pub fn pose_positions(&self, root: &Vector3<f64>, rotations: &[UnitQuaternion<f64>]) -> Vec<Vector3<f64>> {
-        let mut worlds: Vec<(Vector3<f64>, UnitQuaternion<f64>)> = Vec::with_capacity(self.len());
+        let mut worlds = Vec::with_capacity(self.len());
+        self.pose_worlds(root, rotations, &mut worlds);
+        worlds.into_iter().map(|(position, _)| position).collect()
+    }
+
+    /// World positions and rotations of one pose, in place of what `worlds` held.
+    pub(super) fn pose_worlds(
+        &self,
+        root: &Vector3<f64>,
+        rotations: &[UnitQuaternion<f64>],
+        worlds: &mut Vec<(Vector3<f64>, UnitQuaternion<f64>)>,
+    ) {
+        worlds.clear();
         for (joint, local) in self.joints.iter().zip(rotations) {
             let world = match joint.parent.and_then(|p| worlds.get(p)) {
                 Some((position, rotation)) => (position + rotation * joint.offset, rotation * local),
@@ -23,7 +35,6 @@ impl Skeleton {
             };
             worlds.push(world);
         }
-        worlds.into_iter().map(|(position, _)| position).collect()
     }
 
     /// World rotations `[joints]` of one pose of local rotations `[joints]`.

@@ -8,6 +8,7 @@
 //! | [`formats`] | the table of readers |
 //! | [`bvh`] | the BVH parser and [`Clip::write_bvh`] |
 //! | [`write`](Clip::write) | a clip to a file of the format that its name says: BVH, glTF ([`gltf`]), tables of angles ([`angles`]) and of positions (`positions`) |
+//! | [`fbx`] | FBX: bones and their animation |
 //! | [`kinect`] | Kinect CSV recordings: positions, resampled and fitted with a skeleton |
 //! | [`map`] | which joint is the pelvis, the left knee, ...: known layouts, map files, mirror partners |
 //! | [`units`] | what a file's numbers mean: unit of length, up axis |
@@ -19,6 +20,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 pub mod angles;
 pub mod bvh;
 mod error;
+pub mod fbx;
 pub mod formats;
 pub mod gltf;
 pub mod kinect;
@@ -30,6 +32,7 @@ mod notes;
 pub(crate) mod positions;
 mod read;
 mod resample;
+mod settle;
 pub mod solve;
 mod summary;
 pub mod units;

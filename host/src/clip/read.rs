@@ -5,11 +5,11 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::error::ReadError;
-use super::formats::{reader_of, sniffed};
+use super::formats::{is_bvh, reader_of, sniffed};
 use super::map::SkeletonMap;
 use super::notes::{NoteLog, is_assumption};
 use super::units::{Unit, UpAxis};
-use super::{Clip, kinect};
+use super::{Clip, bvh, kinect};
 use crate::files;
 use crate::moves;
 use crate::robot::Machine;
@@ -60,6 +60,10 @@ pub fn read(path: impl AsRef<Path>) -> Result<Clip, ReadError> {
 /// What was assumed or changed on the way in is in [`Clip::notes`].
 pub fn read_with(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Clip, ReadError> {
     let path = path.as_ref();
+    if let Some(clip) = plain(path, options)? {
+        gathered(path, &clip.notes, options)?;
+        return Ok(clip);
+    }
     let (bytes, packed) = unpacked(slurp(path)?, path)?;
     let head = &bytes[..bytes.len().min(HEAD)];
     if sniffed(head).is_none() && moves::is_moves(path, head) {
@@ -74,6 +78,21 @@ pub fn read_with(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Clip, 
     }
     gathered(path, &clip.notes, options)?;
     Ok(clip)
+}
+
+/// A plain BVH file, without ever holding its text. Whatever else there is at the path is left to what reads it whole.
+fn plain(path: &Path, options: &ReadOptions) -> Result<Option<Clip>, ReadError> {
+    if path == Path::new("-") || files::check_regular(path).is_err() {
+        return Ok(None);
+    }
+    let Ok(mut file) = std::fs::File::open(path) else { return Ok(None) };
+    let (mut head, length) = (Vec::new(), file.metadata().map_or(0, |m| m.len() as usize));
+    let read = file.by_ref().take(HEAD as u64).read_to_end(&mut head);
+    if read.is_err() || !is_bvh(&head) {
+        return Ok(None);
+    }
+    let mut source = head.as_slice().chain(file);
+    bvh::read(&mut source, length, options).transpose().map_err(|error| error.at(path))
 }
 
 /// The content of a file, unpacked.
@@ -129,9 +148,6 @@ pub(super) fn slurp(path: &Path) -> Result<Vec<u8>, ReadError> {
 fn describe(bytes: &[u8]) -> String {
     if bytes.is_empty() {
         return "an empty file".into();
-    }
-    if bytes.starts_with(b"Kaydara FBX Binary") || bytes.starts_with(b"; FBX") {
-        return "FBX, which is not read: convert it with Blender (docs/your-clips.md has the line)".into();
     }
     let line = bytes.split(|&b| b == b'\n').next().unwrap_or(&[]);
     match std::str::from_utf8(line) {

@@ -1,5 +1,7 @@
 //! A clip in a few numbers, for `kinesic inspect`.
 
+use rayon::prelude::*;
+
 use super::units::{chain, longest_path};
 use super::{Canonical, Clip, JointMap, Skeleton};
 
@@ -28,8 +30,13 @@ impl Clip {
     /// The clip in a few numbers. Cost: forward kinematics of all frames.
     pub fn summary(&self) -> Summary {
         let map = JointMap::detect(&self.skeleton);
-        let heights = self.all_positions().into_iter().map(|p| p.y);
-        let vertical_m = heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], y| [low.min(y), high.max(y)]);
+        let none = || [f64::INFINITY, f64::NEG_INFINITY];
+        let joined = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
+        let heights = |worlds: &mut Vec<_>, frame| {
+            self.skeleton.pose_worlds(&self.root[frame], self.pose(frame), worlds);
+            worlds.iter().map(|(place, _)| [place.y; 2]).fold(none(), joined)
+        };
+        let vertical_m = (0..self.frames()).into_par_iter().map_init(Vec::new, heights).reduce(none, joined);
         Summary {
             joints: self.skeleton.len(),
             frames: self.frames(),

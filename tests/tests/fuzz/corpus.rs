@@ -25,6 +25,9 @@ pub fn write(corpus: &Path) {
     for (name, text) in motions() {
         put("bvh", name, text.as_bytes());
     }
+    for (name, bytes) in scenes() {
+        put("gltf", name, &bytes);
+    }
     for (name, text) in recordings() {
         put("csv", name, text.as_bytes());
     }
@@ -132,6 +135,45 @@ fn motions() -> Vec<(&'static str, String)> {
         ("odd.bvh", odd.to_owned()),
         ("stick.bvh", stick.to_owned()),
     ]
+}
+
+/// What the writer makes of two joints, as bytes and as text; a scene without a skin with sparse, cubic, stepped and whole-number keys.
+fn scenes() -> Vec<(&'static str, Vec<u8>)> {
+    let mut stick: Clip = walk(&Manner::NEUTRAL, 0.1, 60.0, 0.0, 1).with_joints(&mut hips());
+    stick.root.truncate(3);
+    stick.rotations.truncate(3 * stick.skeleton.len());
+    let whole = walk(&Manner::NEUTRAL, 0.1, 30.0, 0.0, 1);
+    // Times 0, 1/2, 1; quaternions as shares of 127; one place out of a sparse list.
+    let numbers = "AAAAAAAAAD8AAIA/AAAAfwB/AAAAAH8AAQAAAAAAgD8AAIA/AACAPw==";
+    let view = |at: usize, length: usize| format!("{{\"buffer\":0,\"byteOffset\":{at},\"byteLength\":{length}}}");
+    let odd = format!(
+        "{{\"asset\":{{\"version\":\"2.0\"}},\"buffers\":[{{\"byteLength\":40,\"uri\":\"data:application/octet-stream;base64,{numbers}\"}}],\
+         \"bufferViews\":[{},{},{},{}],\"accessors\":[{{\"bufferView\":0,\"componentType\":5126,\"type\":\"SCALAR\",\"count\":3,\
+         \"min\":[0],\"max\":[1]}},{{\"bufferView\":1,\"componentType\":5120,\"normalized\":true,\"type\":\"VEC4\",\"count\":3}},\
+         {{\"componentType\":5126,\"type\":\"VEC3\",\"count\":3,\"sparse\":{{\"count\":1,\"indices\":{{\"bufferView\":2,\
+         \"componentType\":5121}},\"values\":{{\"bufferView\":3}}}}}}],\"nodes\":[{{\"name\":\"Hips\",\"children\":[1,2]}},\
+         {{\"name\":\"Head\",\"translation\":[0,0.7,0],\"scale\":[2,2,2]}},{{\"name\":\"LeftFoot\",\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,0.1,-0.9,0,1]}}],\
+         \"scenes\":[{{\"nodes\":[0]}}],\"animations\":[{{\"samplers\":[{{\"input\":0,\"output\":1,\"interpolation\":\"STEP\"}},{{\"input\":0,\
+         \"output\":2}}],\"channels\":[{{\"sampler\":0,\"target\":{{\"node\":0,\"path\":\"rotation\"}}}},{{\"sampler\":0,\"target\":{{\"node\":1,\
+         \"path\":\"rotation\"}}}},{{\"sampler\":1,\"target\":{{\"node\":0,\"path\":\"translation\"}}}}]}}]}}",
+        view(0, 12),
+        view(12, 12),
+        view(24, 4),
+        view(28, 12)
+    );
+    vec![
+        ("stick.glb", stick.to_glb().unwrap()),
+        ("stick.gltf", stick.to_gltf().unwrap().into_bytes()),
+        ("walk.glb", whole.to_glb().unwrap()),
+        ("odd.gltf", odd.into_bytes()),
+    ]
+}
+
+/// Of the made walk the hips and one foot with what carries it.
+fn hips() -> Vec<bool> {
+    let skeleton = kinesic_host::gait::skeleton();
+    let foot = skeleton.find("LeftFoot");
+    (0..skeleton.len()).map(|joint| Some(joint) == foot).collect()
 }
 
 /// A person who stands, one with gaps, one without a body.

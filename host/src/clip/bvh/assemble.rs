@@ -2,10 +2,9 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::fields::Channel;
 use super::hierarchy::RawJoint;
-use super::motion::Motion;
-use super::{ParseError, euler, orient, spikes};
+use super::rows::Rows;
+use super::{ParseError, orient, spikes};
 use crate::clip::map::JointMap;
 use crate::clip::{Clip, Joint, ReadOptions, Skeleton, measure};
 
@@ -33,12 +32,12 @@ pub(super) struct Draft {
 
 pub(super) fn clip(
     raw: Vec<RawJoint>,
-    motion: Motion,
+    rows: Rows,
+    frame_time: f64,
     options: &ReadOptions,
     notes: Vec<String>,
 ) -> Result<Clip, ParseError> {
-    let frame_time = motion.frame_time;
-    let mut draft = Draft::new(raw, motion);
+    let mut draft = Draft::new(raw, rows);
     draft.relative_positions();
     let skeleton = Skeleton { joints: std::mem::take(&mut draft.joints) };
     let map = joint_map(&skeleton, options)?;
@@ -66,29 +65,8 @@ fn joint_map(skeleton: &Skeleton, options: &ReadOptions) -> Result<Option<JointM
 }
 
 impl Draft {
-    fn new(raw: Vec<RawJoint>, motion: Motion) -> Draft {
-        let (frames, joints) = (motion.frames, raw.len());
-        let width: usize = raw.iter().map(|j| j.channels.len()).sum();
-        let mut rotations = Vec::with_capacity(frames * joints);
-        let mut positions: Vec<Vec<Vector3<f64>>> = vec![Vec::new(); joints];
-        for frame in motion.values.chunks_exact(width) {
-            let mut values = frame.iter().copied();
-            for (joint, track) in raw.iter().zip(&mut positions) {
-                let (mut position, mut moved) = (joint.offset, false);
-                let mut rotation = UnitQuaternion::identity();
-                for (channel, value) in joint.channels.iter().zip(&mut values) {
-                    match *channel {
-                        Channel::Position(axis) => (position[axis], moved) = (value, true),
-                        Channel::Rotation(axis) => rotation *= euler::about_axis(axis, value),
-                        Channel::Unused(_) => {}
-                    }
-                }
-                if moved {
-                    track.push(position);
-                }
-                rotations.push(rotation);
-            }
-        }
+    fn new(raw: Vec<RawJoint>, rows: Rows) -> Draft {
+        let Rows { rotations, positions, frames } = rows;
         let tracks: Vec<Option<Track>> = raw.iter().zip(positions).map(|(j, p)| Track::new(p, j.offset)).collect();
         let offsets = raw.iter().map(|j| j.offset).collect();
         let joints = raw.into_iter().zip(&tracks).map(|(j, track)| Joint {

@@ -72,6 +72,11 @@ impl<'a> Cursor<'a> {
         }
     }
 
+    /// The text that is left.
+    pub(super) fn rest(&self) -> &'a str {
+        self.rest
+    }
+
     /// How many bytes are left.
     pub(super) fn left(&self) -> usize {
         self.rest.len()

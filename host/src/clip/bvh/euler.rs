@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 /// Below this cosine of the middle angle, the first angle is free: the previous frame's is kept.
 const LOCKED: f64 = 1e-9;
@@ -45,12 +45,69 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum()
 }
 
-/// Rotation by `degrees` about axis 0 (X), 1 (Y) or 2 (Z).
-pub(super) fn about_axis(axis: usize, degrees: f64) -> UnitQuaternion<f64> {
-    let (sin, cos) = (degrees.to_radians() / 2.0).sin_cos();
+/// Rotation about axis 0 (X), 1 (Y) or 2 (Z), by twice the angle of this sine and cosine.
+fn about_axis(axis: usize, (sin, cos): (f64, f64)) -> UnitQuaternion<f64> {
     let mut v = Vector3::zeros();
     if let Some(component) = v.get_mut(axis) {
         *component = sin;
     }
-    UnitQuaternion::new_unchecked(nalgebra::Quaternion::from_parts(cos, v))
+    UnitQuaternion::new_unchecked(Quaternion::from_parts(cos, v))
+}
+
+/// The rotation times one by `degrees` about axis 0 (X), 1 (Y) or 2 (Z), as [`about_axis`] makes it to the bit, with half of the products: the others are 0, and matter for the sign of a 0 alone.
+pub(super) fn then_about_axis(rotation: &UnitQuaternion<f64>, axis: usize, degrees: f64) -> UnitQuaternion<f64> {
+    let (s, c) = half(degrees);
+    let [x, y, z, w] = rotation.coords.data.0[0];
+    let product = match axis {
+        0 => [w * s + x * c, y * c + z * s, z * c - y * s, w * c - x * s],
+        1 => [x * c - z * s, w * s + y * c, x * s + z * c, w * c - y * s],
+        _ => [x * c + y * s, y * c - x * s, w * s + z * c, w * c - z * s],
+    };
+    if product.contains(&0.0) {
+        return rotation * about_axis(axis, (s, c));
+    }
+    UnitQuaternion::new_unchecked(Quaternion::from_vector(product.into()))
+}
+
+/// Sine and cosine of half an angle. Many channels are 0 throughout, and theirs are known.
+fn half(degrees: f64) -> (f64, f64) {
+    if degrees == 0.0 { (degrees, 1.0) } else { (degrees.to_radians() / 2.0).sin_cos() }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn bits(rotation: &UnitQuaternion<f64>) -> [u64; 4] {
+        rotation.coords.data.0[0].map(f64::to_bits)
+    }
+
+    /// Angles as files have them: often 0, of both signs, and whole turns.
+    fn angle() -> impl Strategy<Value = f64> {
+        prop_oneof![
+            Just(0.0),
+            Just(-0.0),
+            Just(180.0),
+            Just(-90.0),
+            Just(360.0),
+            -400.0..400.0,
+            -1e-300..1e-300,
+            -1e300..1e300
+        ]
+    }
+
+    proptest! {
+        #[test]
+        fn a_product_with_fewer_terms_has_the_same_bits(turns in prop::collection::vec((0usize..3, angle()), 1..5)) {
+            let mut whole = UnitQuaternion::identity();
+            let mut short = UnitQuaternion::identity();
+            for (axis, degrees) in turns {
+                whole *= about_axis(axis, half(degrees));
+                short = then_about_axis(&short, axis, degrees);
+                prop_assert_eq!(bits(&whole), bits(&short));
+            }
+        }
+    }
 }

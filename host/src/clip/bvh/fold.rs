@@ -98,8 +98,11 @@ impl Draft {
         let positions = (0..self.frames)
             .map(|f| self.position(0, f) + self.rotations[f * n] * self.position(1, f))
             .collect::<Vec<_>>();
-        let all = self.rotations.chunks_exact(n);
-        self.rotations = all.flat_map(|r| std::iter::once(r[0] * r[1]).chain(r[2..].iter().copied())).collect();
+        for pose in self.rotations.chunks_exact_mut(n) {
+            pose[1] = pose[0] * pose[1];
+        }
+        let mut at = 0..;
+        self.rotations.retain(|_| at.next().is_some_and(|at: usize| !at.is_multiple_of(n)));
         self.joints.remove(0);
         for joint in &mut self.joints {
             joint.parent = joint.parent.and_then(|p| p.checked_sub(1));

@@ -21,12 +21,18 @@ mod fields;
 mod fold;
 mod hierarchy;
 mod motion;
+mod number;
 pub(super) mod orient;
+mod plain;
+mod rows;
 mod select;
 mod spikes;
+#[cfg(test)]
+mod tests;
 mod text;
 pub mod write;
 
+use std::io::Read;
 use std::path::Path;
 
 pub use fault::BvhFault;
@@ -67,12 +73,33 @@ impl ParseError {
 
 /// Parses the bytes of a BVH file. Cost: one float parsed per value and one sine and cosine per rotation channel.
 pub fn parse(bytes: &[u8], options: &ReadOptions) -> Result<Clip, ParseError> {
+    read(&mut &*bytes, bytes.len(), options).unwrap_or_else(|| parse_any(bytes, options))
+}
+
+/// Reads a plain file of about `length` bytes without ever holding its text; nothing where the text is of a dialect, or broken, and
+/// [`parse`] has to look at it.
+pub(super) fn read(
+    source: &mut (impl Read + Send),
+    length: usize,
+    options: &ReadOptions,
+) -> Option<Result<Clip, ParseError>> {
+    let plain = plain::read(source, length, options.root.as_deref())?;
+    Some(assemble::clip(plain.joints, plain.rows, plain.frame_time, options, plain.notes))
+}
+
+/// Parses text of any dialect, and says what is wrong with it.
+fn parse_any(bytes: &[u8], options: &ReadOptions) -> Result<Clip, ParseError> {
     let mut notes = Vec::new();
     let text = text::decode(bytes, &mut notes)?;
     let mut cursor = cursor::Cursor::new(&text);
     let mut hierarchy = hierarchy::parse(&mut cursor)?;
     notes.append(&mut hierarchy.notes);
     let motion = motion::parse(cursor, &hierarchy.joints, &mut notes)?;
-    let (joints, motion) = select::used(hierarchy.joints, motion, options.root.as_deref(), &mut notes)?;
-    assemble::clip(joints, motion, options, notes)
+    let (joints, keep) = select::used(hierarchy.joints, options.root.as_deref(), &mut notes)?;
+    let mut rows = rows::Rows::new(&joints, motion.values.len() / keep.len());
+    for frame in motion.values.chunks_exact(keep.len()) {
+        rows.push(&joints, frame.iter().zip(&keep).filter(|(_, keep)| **keep).map(|(value, _)| *value));
+    }
+    drop(motion.values);
+    assemble::clip(joints, rows, motion.frame_time, options, notes)
 }

@@ -11,8 +11,43 @@ const LONGEST: f64 = 10.0;
 /// The motion as the file has it: `values` is row-major `[frames x channels]`, file units and degrees.
 pub(super) struct Motion {
     pub frame_time: f64,
-    pub frames: usize,
     pub values: Vec<f64>,
+}
+
+/// What stands between the keyword MOTION and the first frame.
+pub(super) struct Header {
+    /// Where the number of frames is, or should be.
+    line: usize,
+    /// How many frames are announced, if it is said.
+    pub frames: Option<usize>,
+    pub frame_time: f64,
+}
+
+/// Reads from after the keyword MOTION to the first frame.
+pub(super) fn header(cursor: &mut Cursor<'_>) -> Result<Header, BvhFault> {
+    let (line, frames) = frame_count(cursor)?;
+    Ok(Header { line, frames, frame_time: frame_time(cursor)? })
+}
+
+impl Header {
+    /// Compares what was announced with what there is at the end, on line `line`.
+    pub(super) fn check(&self, frames: usize, line: usize, notes: &mut Vec<String>) -> Result<(), BvhFault> {
+        let declared_line = self.line;
+        match self.frames {
+            Some(declared) if frames + 1 < declared || frames == 0 => {
+                return Err(BvhFault::FewerFrames { line, declared, declared_line, found: frames });
+            }
+            None if frames == 0 => {
+                return Err(BvhFault::FewerFrames { line, declared: 1, declared_line, found: 0 });
+            }
+            Some(declared) if declared != frames => notes.push(format!(
+                "Line {declared_line} declares {declared} frames, the file has {frames} whole ones: all of them are read."
+            )),
+            Some(_) => {}
+            None => notes.push(format!("The number of frames is not given: {frames} are read.")),
+        }
+        Ok(())
+    }
 }
 
 /// Reads from after the keyword MOTION to the end.
@@ -21,8 +56,8 @@ pub(super) fn parse(mut cursor: Cursor<'_>, joints: &[RawJoint], notes: &mut Vec
     if channels == 0 {
         return Err(BvhFault::NoChannels);
     }
-    let (declared_line, declared) = frame_count(&mut cursor)?;
-    let frame_time = frame_time(&mut cursor)?;
+    let header = header(&mut cursor)?;
+    let Header { frames: declared, frame_time, .. } = header;
     let start = cursor;
 
     // A value takes two bytes at least: the file's size, not its claim, bounds what is reserved.
@@ -52,26 +87,14 @@ pub(super) fn parse(mut cursor: Cursor<'_>, joints: &[RawJoint], notes: &mut Vec
             let fault = BvhFault::ValueCount { line, frame: frames, found, expected: channels, last };
             let values = wrapped(start, channels, declared).ok_or(fault)?;
             notes.push("Frames are broken over several lines: cut by the number of channels.".into());
-            return Ok(Motion { frame_time, frames: values.len() / channels, values });
+            return Ok(Motion { frame_time, values });
         }
     }
-    match declared {
-        Some(declared) if frames + 1 < declared || frames == 0 => {
-            return Err(BvhFault::FewerFrames { line: cursor.line(), declared, declared_line, found: frames });
-        }
-        None if frames == 0 => {
-            return Err(BvhFault::FewerFrames { line: cursor.line(), declared: 1, declared_line, found: 0 });
-        }
-        Some(declared) if declared != frames => notes.push(format!(
-            "Line {declared_line} declares {declared} frames, the file has {frames} whole ones: all of them are read."
-        )),
-        Some(_) => {}
-        None => notes.push(format!("The number of frames is not given: {frames} are read.")),
-    }
+    header.check(frames, cursor.line(), notes)?;
     if glued > 0 {
         notes.push(format!("{glued} words are several numbers without a blank between them (1.5-2.5): taken apart."));
     }
-    Ok(Motion { frame_time, frames, values })
+    Ok(Motion { frame_time, values })
 }
 
 /// All numbers of the motion in one row, where they make whole frames, as many as were declared.

@@ -1,17 +1,16 @@
-//! One figure of a file, and of its numbers those that a pose needs.
+//! One figure of a file, and which of its numbers a pose needs.
 
 use super::fault::BvhFault;
 use super::fields::Channel;
 use super::hierarchy::RawJoint;
-use super::motion::Motion;
 
-/// The joints below one ROOT, the first unless `root` names another, without channels that no pose needs.
+/// The joints below one ROOT, the first unless `root` names another, without channels that no pose needs; and which of a frame's numbers
+/// are theirs.
 pub(super) fn used(
     mut joints: Vec<RawJoint>,
-    mut motion: Motion,
     root: Option<&str>,
     notes: &mut Vec<String>,
-) -> Result<(Vec<RawJoint>, Motion), BvhFault> {
+) -> Result<(Vec<RawJoint>, Vec<bool>), BvhFault> {
     let roots: Vec<usize> = (0..joints.len()).filter(|&j| joints[j].parent.is_none()).collect();
     let names = || roots.iter().map(|&r| format!("'{}'", joints[r].name)).collect::<Vec<_>>().join(", ");
     let chosen = match root {
@@ -44,18 +43,16 @@ pub(super) fn used(
         })
         .collect();
     if keep.iter().all(|&k| k) {
-        return Ok((joints, motion));
+        return Ok((joints, keep));
     }
     if !keep.contains(&true) {
         return Err(BvhFault::NoChannels);
     }
-    let mut columns = keep.iter().cycle();
-    motion.values.retain(|_| columns.next() == Some(&true));
     joints.truncate(end);
     joints.drain(..first);
     for joint in &mut joints {
         joint.parent = joint.parent.map(|p| p - first);
         joint.channels.retain(|c| !matches!(c, Channel::Unused(_)));
     }
-    Ok((joints, motion))
+    Ok((joints, keep))
 }

@@ -1,6 +1,7 @@
 //! Frames that were lost, and single frames that leap: found always, bridged only when asked.
 
 use nalgebra::{UnitQuaternion, Vector3};
+use rayon::prelude::*;
 
 use crate::clip::Clip;
 
@@ -108,14 +109,12 @@ fn glitches(clip: &Clip) -> Vec<(usize, usize)> {
     // Near again: within a quarter of the way out.
     let back = (limit / 8.0).cos();
     let alike = |a: &UnitQuaternion<f64>, b: &UnitQuaternion<f64>| a.coords.dot(&b.coords).abs();
-    let mut found = Vec::new();
-    for at in n..clip.rotations.len().saturating_sub(n) {
-        let [before, here, after] = [at - n, at, at + n].map(|i| &clip.rotations[i]);
-        if alike(before, here) < far && alike(here, after) < far && alike(before, after) > back {
-            found.push((at / n, at % n));
-        }
-    }
-    found
+    let leaps = |at: &usize| {
+        let [before, here, after] = [at - n, *at, at + n].map(|i| &clip.rotations[i]);
+        alike(before, here) < far && alike(here, after) < far && alike(before, after) > back
+    };
+    let all = (n..clip.rotations.len().saturating_sub(n)).into_par_iter().with_min_len(1 << 14);
+    all.filter(leaps).map(|at| (at / n, at % n)).collect()
 }
 
 fn bridge(clip: &mut Clip, roots: &[usize], turns: &[(usize, usize)]) {

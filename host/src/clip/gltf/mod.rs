@@ -1,4 +1,4 @@
-//! glTF 2.0, read (`read`) and written. Writing: skeleton, animation, and a body of bones so that a viewer shows something.
+//! glTF 2.0, read (`read`: `numbers`, `tracks`) and written. Writing: skeleton, animation, and a body of bones so that a viewer shows something.
 //!
 //! | what | how |
 //! |---|---|
@@ -14,10 +14,11 @@
 //! `.glb` holds the numbers as a binary chunk, `.gltf` as base64 in the JSON: one file in both cases.
 
 mod bones;
+mod numbers;
 mod read;
+mod tracks;
 
-pub use read::parse;
-pub(super) use read::read;
+pub use read::{parse, read};
 
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;

@@ -3,43 +3,36 @@
 //! A node has a rotation of its own at rest. A clip rests with all rotations at identity, so a joint's rotation here is what turns it from
 //! the file's rest pose, in axes of the world: `G(t) = W(t) W(rest)^-1`.
 
-use std::collections::HashMap;
+use std::collections::HashSet;
 use std::path::Path;
 
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
-use gltf::animation::Interpolation;
-use gltf::animation::util::ReadOutputs;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-use crate::clip::bvh::orient;
-use crate::clip::{Clip, Joint, JointMap, ReadError, ReadOptions, Skeleton, measure};
+use super::tracks::{Tracks, rate, tracks};
+use crate::clip::bvh::MAX_JOINTS;
+use crate::clip::{Clip, Joint, ReadError, ReadOptions, Skeleton, settle};
+use crate::files;
 
 /// Most frames that are made of keys.
 const MOST: f64 = 1e6;
+/// Bytes that a moving node takes a frame while it is read.
+const NODE: f64 = 32.0;
 
-/// Reads a file of text or of the binary kind.
-pub(in crate::clip) fn read(bytes: &[u8], path: &Path, options: &ReadOptions) -> Result<Clip, ReadError> {
+/// Reads a file of text or of the binary kind; the path is for messages, and its folder holds the buffers that a text file names.
+pub fn read(bytes: &[u8], path: &Path, options: &ReadOptions) -> Result<Clip, ReadError> {
     let refuse = |fault: String| ReadError::Gltf { path: path.into(), fault };
-    let map_error = |error| ReadError::Map { path: path.into(), error };
-    let mut clip = parse(bytes, path.parent()).map_err(refuse)?;
-    if let Some(unit) = options.units {
-        let factor = unit.metres();
-        clip.root.iter_mut().for_each(|p| *p *= factor);
-        clip.skeleton.joints.iter_mut().for_each(|j| j.offset *= factor);
-        clip.notes.push(format!("Units: {unit}, as given."));
-    }
-    let map = JointMap::choose(&clip.skeleton, options.map.as_ref()).map_err(map_error)?;
-    measure::note_names(&mut clip, map.as_ref(), options);
-    orient::turn(&mut clip, map.as_ref(), options);
-    orient::note_floor(&mut clip);
-    measure::note_size(&mut clip, map.as_ref());
-    clip.make_signs_continuous();
-    Ok(clip)
+    let clip = parse(bytes, path.parent()).map_err(refuse)?;
+    settle::in_metres(clip, path, options)
 }
 
 /// Parses the bytes; `folder` holds the buffers that a text file names.
 pub fn parse(bytes: &[u8], folder: Option<&Path>) -> Result<Clip, String> {
+    // The crate takes the header's length for at least its own.
+    if bytes.starts_with(b"glTF") && !bytes.get(8..12).is_some_and(|l| l.iter().rev().ge(&[0, 0, 0, 12])) {
+        return Err("its header is broken. Export it again".into());
+    }
     let file = gltf::Gltf::from_slice(bytes).map_err(|e| format!("this is no glTF 2.0: {e}. Export it again"))?;
     let mut blob = file.blob.clone();
     let buffers = file.buffers().map(|b| buffer(&b, &mut blob, folder)).collect::<Result<Vec<_>, _>>()?;
@@ -49,7 +42,10 @@ pub fn parse(bytes: &[u8], folder: Option<&Path>) -> Result<Clip, String> {
         let names: Vec<&str> = file.animations().map(|a| a.name().unwrap_or("(no name)")).collect();
         notes.push(format!("The file has {} animations ({}): the first is read.", names.len(), names.join(", ")));
     }
-    let tracks = tracks(&animation, &buffers)?;
+    let size = bytes.len() + buffers.iter().map(Vec::len).sum::<usize>();
+    // What is read is at most 20 times the file, and 200 MB: keys are rows of four numbers, frames have every node.
+    let allowed = 20.0 * size as f64 + 2e8;
+    let tracks = tracks(&file, &animation, &buffers, (allowed / 16.0) as usize)?;
     let nodes = Nodes::new(&file, &tracks)?;
     let (times, end) = tracks.times();
     if end <= 0.0 {
@@ -62,6 +58,15 @@ pub fn parse(bytes: &[u8], folder: Option<&Path>) -> Result<Clip, String> {
         ));
     }
     let count = 1 + (end * fps + 1e-3).floor() as usize;
+    let needed = count as f64 * nodes.order.len() as f64 * NODE;
+    if needed > allowed {
+        return Err(format!(
+            "{count} frames of {} nodes take {:.0} MB of memory, at most {:.0} MB are taken (20 times the file, and 200 MB)",
+            nodes.order.len(),
+            needed / 1e6,
+            allowed / 1e6
+        ));
+    }
     let rest = nodes.worlds(None);
     let joints: Vec<Joint> = nodes.joints.iter().map(|j| nodes.joint(j, &rest)).collect();
     let mut clip = Clip {
@@ -98,7 +103,7 @@ fn buffer(buffer: &gltf::Buffer, blob: &mut Option<Vec<u8>>, folder: Option<&Pat
             None => {
                 let inside = Path::new(uri).components().all(|c| matches!(c, std::path::Component::Normal(_)));
                 let folder = folder.filter(|_| inside).ok_or(format!("the buffer '{uri}' is not beside the file"))?;
-                std::fs::read(folder.join(uri)).map_err(|e| format!("the buffer '{uri}' cannot be read: {e}"))?
+                files::read(&folder.join(uri)).map_err(|e| format!("the buffer '{uri}' cannot be read: {e}"))?
             }
         },
     };
@@ -106,89 +111,6 @@ fn buffer(buffer: &gltf::Buffer, blob: &mut Option<Vec<u8>>, folder: Option<&Pat
         true => Err(format!("a buffer has {} bytes, expected {}. The file is cut off", bytes.len(), buffer.length())),
         false => Ok(bytes),
     }
-}
-
-/// Keys of one property of one node: times in s, values of 3 or 4 numbers.
-struct Track {
-    times: Vec<f32>,
-    values: Vec<[f32; 4]>,
-    kind: Interpolation,
-}
-
-impl Track {
-    /// Values before and after a time, and how far it is between them.
-    fn at(&self, time: f64) -> ([f32; 4], [f32; 4], f32) {
-        let after = self.times.partition_point(|t| f64::from(*t) <= time).min(self.times.len() - 1);
-        let before = after.saturating_sub(1);
-        // A cubic key is tangent, value, tangent; between frames a straight line does.
-        let value = |key: usize| match self.kind {
-            Interpolation::CubicSpline => self.values.get(3 * key + 1),
-            _ => self.values.get(key),
-        };
-        let (a, b) = (value(before).copied().unwrap_or_default(), value(after).copied().unwrap_or_default());
-        let span = f64::from(self.times[after]) - f64::from(self.times[before]);
-        let part = if span > 0.0 { ((time - f64::from(self.times[before])) / span).clamp(0.0, 1.0) } else { 1.0 };
-        let part = if matches!(self.kind, Interpolation::Step) { part.floor() } else { part };
-        (a, b, part as f32)
-    }
-}
-
-#[derive(Default)]
-struct Tracks {
-    places: HashMap<usize, Track>,
-    turns: HashMap<usize, Track>,
-}
-
-impl Tracks {
-    /// All times of the longest track, and the last time of any.
-    fn times(&self) -> (Vec<f32>, f64) {
-        let all = || self.places.values().chain(self.turns.values());
-        let longest = all().max_by_key(|t| t.times.len()).map(|t| t.times.clone()).unwrap_or_default();
-        let end = all().filter_map(|t| t.times.last()).fold(0.0, |a: f64, b| a.max(f64::from(*b)));
-        (longest, end)
-    }
-}
-
-fn tracks(animation: &gltf::Animation, buffers: &[Vec<u8>]) -> Result<Tracks, String> {
-    let mut tracks = Tracks::default();
-    for channel in animation.channels() {
-        let reader = channel.reader(|b| buffers.get(b.index()).map(Vec::as_slice));
-        let (Some(times), Some(values)) = (reader.read_inputs(), reader.read_outputs()) else {
-            return Err("a channel of the animation has no keys. Export it again".into());
-        };
-        let times: Vec<f32> = times.collect();
-        let (values, rotation): (Vec<[f32; 4]>, bool) = match values {
-            ReadOutputs::Translations(all) => (all.map(|[x, y, z]| [x, y, z, 0.0]).collect(), false),
-            ReadOutputs::Rotations(all) => (all.into_f32().collect(), true),
-            _ => continue,
-        };
-        let kind = channel.sampler().interpolation();
-        let each = if matches!(kind, Interpolation::CubicSpline) { 3 } else { 1 };
-        if times.is_empty()
-            || values.len() != each * times.len()
-            || times.windows(2).any(|w| w[0].partial_cmp(&w[1]) != Some(std::cmp::Ordering::Less))
-        {
-            return Err("the keys of a channel are not in order of time, or not one value each. Export it again".into());
-        }
-        let of = if rotation { &mut tracks.turns } else { &mut tracks.places };
-        of.insert(channel.target().node().index(), Track { times, values, kind });
-    }
-    Ok(tracks)
-}
-
-/// The rate of the keys where they are even, else 30.
-fn rate(times: &[f32], notes: &mut Vec<String>) -> f64 {
-    let mut steps: Vec<f64> = times.windows(2).map(|w| f64::from(w[1]) - f64::from(w[0])).collect();
-    steps.sort_by(f64::total_cmp);
-    let step = steps.get(steps.len() / 2).copied().unwrap_or(1.0 / 30.0);
-    let even = steps.iter().filter(|s| (*s / step - 1.0).abs() < 0.05).count() * 10 >= steps.len() * 9;
-    let fps = 1.0 / step;
-    let fps = if (fps - fps.round()).abs() < 2e-3 * fps { fps.round() } else { fps };
-    if even && (1.0..=1000.0).contains(&fps) {
-        return fps;
-    }
-    notes.push("The keys are not evenly spaced: sampled at 30 frames per second.".into());
-    30.0
 }
 
 /// Place, rotation and scale of a node in the world.
@@ -237,15 +159,22 @@ impl Nodes {
         let names: Vec<String> =
             file.nodes().map(|n| n.name().map_or_else(|| format!("node{}", n.index()), str::to_owned)).collect();
         let mut joints: Vec<Bone> = Vec::new();
-        let mut index: HashMap<usize, usize> = HashMap::new();
-        for &(node, _) in order.iter().filter(|(n, _)| chosen[*n]) {
-            let above = std::iter::successors(parent[node], |&p| parent[p]).find_map(|p| index.get(&p).copied());
-            if above.is_none() && !joints.is_empty() {
-                continue; // A second tree beside the body.
+        let mut taken: HashSet<&str> = HashSet::new();
+        // The nearest joint at or above each node.
+        let mut nearest: Vec<Option<usize>> = vec![None; parent.len()];
+        for &(node, _) in &order {
+            let above = parent[node].and_then(|p| nearest[p]);
+            nearest[node] = above;
+            // A second tree beside the body is left out.
+            if !chosen[node] || (above.is_none() && !joints.is_empty()) {
+                continue;
             }
-            index.insert(node, joints.len());
-            let twice = joints.iter().any(|j| j.name == names[node]);
-            let name = if twice { format!("{}_{node}", names[node]) } else { names[node].clone() };
+            if joints.len() >= MAX_JOINTS {
+                return Err(format!("it has more than {MAX_JOINTS} joints, at most that many are read"));
+            }
+            nearest[node] = Some(joints.len());
+            let name = &names[node];
+            let name = if taken.insert(name) { name.clone() } else { format!("{name}_{node}") };
             joints.push(Bone { node, name, parent: above });
         }
         if joints.is_empty() {

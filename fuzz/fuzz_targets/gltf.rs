@@ -1,0 +1,4 @@
+//! Runs `kinesic_fuzz::gltf` on whatever libFuzzer comes up with.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| kinesic_fuzz::gltf(data));
