@@ -28,6 +28,7 @@ pub mod plain;
 pub mod prepare;
 pub mod quality;
 pub mod quantise;
+mod quietly;
 pub mod report;
 pub mod retarget;
 pub mod rig;

@@ -44,6 +44,6 @@ mod tests {
         let is = |manner: Manner, seconds| walks(&rig, &rig.locals_of(&walk(&manner, seconds, 60.0, 0.3, 1)));
         assert!(is(Manner::NEUTRAL, 2.5) && is(Manner::WEARY, 4.0));
         assert!(!is(Manner::NEUTRAL, 0.8));
-        assert!(!is(Manner { stride: 0.0, ..Manner::WEARY }, 4.0));
+        assert!(!is(Manner { stride: 0.0, knee: 0.0, ..Manner::WEARY }, 4.0));
     }
 }
