@@ -39,9 +39,6 @@ pub(super) fn sniffed(head: &[u8]) -> Option<&'static Reader> {
 /// The reader of a file: by content first, because a wrong extension is common, then by extension.
 pub(super) fn reader_of(path: &Path, head: &[u8]) -> Option<&'static Reader> {
     sniffed(head).or_else(|| {
-        if head.is_empty() {
-            return None;
-        }
         let name = path.file_name()?.to_str()?.to_ascii_lowercase();
         let extension = name.strip_suffix(".gz").unwrap_or(&name).rsplit('.').next()?.to_owned();
         READERS.iter().find(|reader| reader.extensions.contains(&extension.as_str()))

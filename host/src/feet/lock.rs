@@ -14,6 +14,10 @@ const SMOOTH: f64 = 0.05;
 const RAMP: f64 = 0.06;
 /// Longest time for which a styled foot is held before or after the contact of the source, s.
 const GOES_ON: f64 = 0.15;
+/// Way of a foot that is noticed, m: less is rounding, and a straight knee would change sides for it.
+const NOTICED: f64 = 5e-5;
+/// Change of a step from which a styled foot may go on standing, m.
+const STYLED: f64 = 0.01;
 /// Longest flight between two contacts over which the correction of the travel is carried on, s.
 const FLIGHT: f64 = 0.4;
 /// Part of its length to which a leg that stands is stretched at most.
@@ -51,7 +55,7 @@ pub fn lock(source: &Clip, styled: &Clip, map: &JointMap) -> Clip {
     let joints = out.skeleton.len();
     for (foot, ways) in feet.iter().zip(&ways) {
         let axis = knee_axis(styled, foot);
-        for (frame, way) in ways.iter().enumerate().filter(|(_, way)| way.norm() > 0.0) {
+        for (frame, way) in ways.iter().enumerate().filter(|(_, way)| way.norm() > NOTICED) {
             let locals = &mut out.rotations[frame * joints..(frame + 1) * joints];
             reach(&out.skeleton, (foot, &axis), &out.root[frame], locals, *way);
         }
@@ -111,7 +115,7 @@ fn holds(from: &[Vector3<f64>], to: &[Vector3<f64>], stands: &[bool], also: &[bo
             ways[frame] = from[frame] + Vector3::new(mean.x, 0.0, mean.z) - to[frame];
         }
     }
-    let stands = goes_on(&mut ways, to, stands, also, fps);
+    let stands = goes_on(&mut ways, [from, to], stands, also, fps);
     let in_air: Vec<bool> = stands.iter().map(|stands| !stands).collect();
     for gap in runs(&in_air) {
         let blend = (BLEND * fps).min((gap.len() + 1) as f64);
@@ -131,11 +135,20 @@ fn holds(from: &[Vector3<f64>], to: &[Vector3<f64>], stands: &[bool], also: &[bo
 
 /// A styled foot that stands before or after a contact of the source, and without a break, stands on the same spot for that time too. Says
 /// when a foot is held.
-fn goes_on(ways: &mut [Vector3<f64>], to: &[Vector3<f64>], stands: &[bool], also: &[bool], fps: f64) -> Vec<bool> {
+fn goes_on(
+    ways: &mut [Vector3<f64>],
+    [from, to]: [&[Vector3<f64>]; 2],
+    stands: &[bool],
+    also: &[bool],
+    fps: f64,
+) -> Vec<bool> {
     let (mut held, most) = (stands.to_vec(), (GOES_ON * fps) as usize);
     let mut hold = |frame: usize, at: usize| {
         let spot = to[at] + ways[at];
-        ways[frame] = Vector3::new(spot.x - to[frame].x, ways[at].y, spot.z - to[frame].z);
+        // What the style does not change stays, whichever side of a threshold it is on.
+        let styled = (to[frame] - from[frame]) - (to[at] - from[at]);
+        let weight = (styled.norm() / STYLED).min(1.0);
+        ways[frame] = Vector3::new(weight * (spot.x - to[frame].x), ways[at].y, weight * (spot.z - to[frame].z));
         held[frame] = true;
     };
     for run in runs(stands) {
