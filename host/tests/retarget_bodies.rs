@@ -65,7 +65,7 @@ fn every_body_on_every_other() {
                 let (moved, measured) = measure(&source.clip, &source.map, &rig);
                 if let Some(out) = &out {
                     let stem = source.path.file_stem().unwrap().to_string_lossy().into_owned();
-                    moved.write_bvh(&out.join(format!("{}-on-{}-{stem}.bvh", BODIES[from].0, BODIES[to].0))).unwrap();
+                    moved.write_bvh(out.join(format!("{}-on-{}-{stem}.bvh", BODIES[from].0, BODIES[to].0))).unwrap();
                 }
                 all.push((from, to, at, measured, native));
             }
@@ -153,9 +153,11 @@ fn print(all: &[(usize, usize, usize, Measured, f64)]) {
     let classes = bodies::LIMBS.iter().map(|l| l.0).chain(bodies::TIPS.iter().map(|t| t.0));
     for class in classes {
         let rows: Vec<_> = all.iter().flat_map(|a| a.3.limbs.iter().filter(|l| l.0 == class)).collect();
-        let worst = |of: &dyn Fn(&(&str, f64, f64, f64)) -> f64| rows.iter().map(|r| of(r)).fold(0.0, f64::max);
+        let worst = |values: Vec<f64>| values.into_iter().fold(0.0, f64::max);
         let mean = rows.iter().map(|r| r.1).sum::<f64>() / rows.len() as f64;
-        let (a, b, c) = (worst(&|r| r.1), worst(&|r| r.2), worst(&|r| r.3));
+        let a = worst(rows.iter().map(|r| r.1).collect());
+        let b = worst(rows.iter().map(|r| r.2).collect());
+        let c = worst(rows.iter().map(|r| r.3).collect());
         println!("{class:<12} {mean:6.2} {a:6.2} {b:6.2} {c:6.2}  ({})", rows.len());
     }
     let under = |at: f64| 100.0 * share(all.iter().map(|a| a.3.under[0]).collect(), at);
