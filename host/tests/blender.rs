@@ -13,7 +13,7 @@ plain = builtins.open
 builtins.open = lambda name, mode='r', *rest, **named: plain(name, mode.replace('U', ''), *rest, **named)
 import bpy
 bpy.ops.wm.read_factory_settings(use_empty=True)
-bpy.ops.import_anim.bvh(filepath='made.bvh', update_scene_fps=True, update_scene_duration=True)
+bpy.ops.import_anim.bvh(filepath='made.bvh', global_scale=0.01, update_scene_fps=True, update_scene_duration=True)
 bpy.ops.export_scene.fbx(filepath='in.fbx', add_leaf_bones=False, bake_anim_simplify_factor=0.0)
 ";
 

@@ -44,6 +44,17 @@ fn a_text_file_turns_as_it_says() {
 }
 
 #[test]
+fn lengths_are_in_metres_whatever_the_unit_of_the_file() {
+    let text = std::str::from_utf8(TEXT).expect("text");
+    let centimetres =
+        text.replace("\"Number\", \"\",100", "\"Number\", \"\",1").replace("\"A\",0,1,0", "\"A\",0,100,0");
+    let clip = read(centimetres.replace("\"A\",0,0.6,0", "\"A\",0,60,0").as_bytes()).expect("it is read");
+    for (is, should) in clip.positions(0).iter().zip([1.0, 1.6]) {
+        assert!((is - Vector3::new(0.0, should, 0.0)).norm() < 1e-6, "{is}");
+    }
+}
+
+#[test]
 fn what_blender_made_of_a_walk_is_that_walk() {
     let options = ReadOptions { units: Some(Unit::Centimetre), ..ReadOptions::default() };
     let source = clip::bvh::parse(SOURCE.as_bytes(), &options).expect("text");

@@ -50,8 +50,14 @@ pub fn parse(bytes: &[u8]) -> Result<Clip, String> {
         fps = 30.0;
         notes.push("The file has no plausible frame rate: sampled at 30 frames per second.".into());
     }
-    let (begin, end) = (stack.time_begin, stack.time_end);
-    let length = end - begin;
+    let (mut begin, mut length) = (stack.time_begin, stack.time_end - stack.time_begin);
+    if length == 0.0 {
+        // Exporters leave out a start or an end that is 0.
+        let keys = || scene.animation_curves().iter().flat_map(|curve| &curve.keys).map(|key| key.time);
+        begin = keys().fold(f64::INFINITY, f64::min);
+        length = keys().fold(f64::NEG_INFINITY, f64::max) - begin;
+        notes.push("The animation says no start or no end: it is read from its first key to its last.".into());
+    }
     if !(length.is_finite() && length > 0.0) {
         return Err("the animation has no length, expected a motion".into());
     }
@@ -65,12 +71,11 @@ pub fn parse(bytes: &[u8]) -> Result<Clip, String> {
         ));
     }
     let bones = bones(&scene)?;
-    // World transforms are in the file's unit.
-    let unit = scene.settings().unit_meters();
-    let rest: Vec<World> = bones.iter().map(|bone| World::new(&rest(&scene, bone.node), unit)).collect();
+    // World transforms are in metres, whatever the file's unit is.
+    let rest: Vec<World> = bones.iter().map(|bone| World::new(&rest(&scene, bone.node))).collect();
     let frames = (0..count as usize).into_par_iter().map(|frame| {
         let pose = scene.evaluate(Some(at), begin + frame as f64 / fps).map_err(|error| error.to_string())?;
-        let world = |bone: &Bone| pose.nodes.get(bone.node).map(|node| World::new(&node.node_to_world, unit));
+        let world = |bone: &Bone| pose.nodes.get(bone.node).map(|node| World::new(&node.node_to_world));
         let worlds = bones.iter().map(world).collect::<Option<Vec<World>>>().ok_or("a bone is lost")?;
         let turned: Vec<_> = worlds.iter().zip(&rest).map(|(w, rest)| w.rotation * rest.rotation.inverse()).collect();
         let local = bones.iter().zip(&turned).map(|(b, turn)| b.parent.map_or(*turn, |p| turned[p].inverse() * turn));
@@ -143,7 +148,7 @@ struct World {
 }
 
 impl World {
-    fn new(matrix: &Matrix, unit: f64) -> World {
+    fn new(matrix: &Matrix) -> World {
         let column = |i: usize| Vector3::from(matrix.column(i));
         let x = column(0).try_normalize(1e-12).unwrap_or(Vector3::x());
         let y = column(1) - x * x.dot(&column(1));
@@ -152,6 +157,6 @@ impl World {
             .unwrap_or_else(|| x.cross(&Vector3::z()).try_normalize(1e-12).unwrap_or(Vector3::y()));
         let turn = Matrix3::from_columns(&[x, y, x.cross(&y)]);
         let rotation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(turn));
-        World { place: column(3) * unit, rotation }
+        World { place: column(3), rotation }
     }
 }
