@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 data=$(realpath "${KINESIC_DATA:-../shared/data}")
 export KINESIC_DATA=$data
-cargo build --release --locked -q -p kinesic-host --bins --example contact_sheet
+cargo build --release --locked -q -p kinesic-host --bins
 cargo build --release --locked -q -p kinesic-benches --bin components-bench
 target=${CARGO_TARGET_DIR:-target}/release
 work=$(mktemp -d)
@@ -34,8 +34,8 @@ for table in "${@:-penalty explained transfer pairs count curve sheet}"; do
             "$target/kinesic" train components --content "$data/cmu31/07_01.bvh" --style "$data/m21/style/OLD-1.bvh" \
                 -k 30 --smooth 1 --out "$work/old.kin"
             "$target/kinesic" apply "$work/old.kin" --stored --out "$work/old.bvh"
-            "$target/examples/contact_sheet" docs/components/old.png 10 \
-                "$data/cmu31/07_01.bvh" "$data/m21/style/OLD-1.bvh" "$work/old.bvh"
+            "$target/kinesic" sheet "$data/cmu31/07_01.bvh" "$data/m21/style/OLD-1.bvh" "$work/old.bvh" \
+                --frames 10 --out docs/components/old.png
             ;;
         *) "$target/components-bench" "$table" ;;
         esac

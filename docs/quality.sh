@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Prints the tables of docs/quality.md. About six minutes on two cores. Needs the real clips (KINESIC_DATA).
-# usage: docs/quality.sh [xia|swap|child|people|recognition]...   (default: all)
+# usage: docs/quality.sh [xia|swap|feet|child|people|recognition]...   (default: all)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 data=$(realpath "${KINESIC_DATA:-../shared/data}")
@@ -11,10 +11,10 @@ trap 'rm -rf "$work"' EXIT
 
 # First occurrence of a number in the JSON of the command: the mean over the pairs.
 value() { grep -m1 "\"$2\":" "$1" | tr -dc '0-9.-'; }
-# angle FILE WHO WHAT: the first mean angle of WHO (error, identity, offset, affine) over WHAT (all, leaves), closed ends.
+# angle FILE WHO WHAT: the first mean angle of WHO (error, identity, offset, affine) over WHAT (all, leaves), open ends.
 angle() {
     awk -v who="\"$2\": {" -v what="\"$3\":" \
-        '/"degrees": \{/ { in_degrees = 1 } in_degrees && index($0, who) { in_who = 1 }
+        '/"open_degrees": \{/ { in_degrees = 1 } in_degrees && index($0, who) { in_who = 1 }
          in_who && index($0, what) { gsub(/[^0-9.-]/, ""); print; exit }' "$1"
 }
 word() { grep -m1 "\"$2\":" "$1" | cut -d'"' -f4; }
@@ -28,17 +28,14 @@ end_record() { echo >>"$work/all"; }
 xia() {
     local clips=$data/xia style form options who what
     echo
-    echo "Trained on take $1, tested on take $2; closed ends, cm"
+    echo "Trained on take $1, tested on take $2; open ends, cm"
     echo
     echo "| style | identity | offset | affine | per joint | whole body | **chosen** | floor | chosen: alignment, model |"
     echo "|---|---|---|---|---|---|---|---|---|"
     : >"$work/all"
     for style in angry childlike depressed old proud sexy strutting; do
-        for form in per-joint whole-body auto in-step; do
-            options="--form $form"
-            [ $form = in-step ] && options="--align in-step"
-            # shellcheck disable=SC2086
-            "$kinesic" train translate --pair "$clips/neutral_01_$1.bvh" "$clips/${style}_01_$1.bvh" $options \
+        for form in per-joint whole-body auto; do
+            "$kinesic" train translate --pair "$clips/neutral_01_$1.bvh" "$clips/${style}_01_$1.bvh" --form $form \
                 --out "$work/$form.kin" --json >"$work/$form.train"
             "$kinesic" eval translate "$work/$form.kin" --json \
                 --pair "$clips/neutral_01_$2.bvh" "$clips/${style}_01_$2.bvh" >"$work/$form"
@@ -46,22 +43,21 @@ xia() {
         # Doing nothing to one take and comparing with the other: what two takes of a style differ by.
         "$kinesic" eval translate "$work/auto.kin" --json \
             --pair "$clips/${style}_01_$1.bvh" "$clips/${style}_01_$2.bvh" >"$work/floor"
-        record "$work/auto" identity_cm offset_cm affine_cm
-        for form in per-joint whole-body auto; do record "$work/$form" error_cm; done
-        record "$work/floor" identity_cm
-        record "$work/auto" open_identity_cm open_offset_cm open_affine_cm open_error_cm
-        record "$work/in-step" error_cm open_error_cm
+        record "$work/auto" open_identity_cm open_offset_cm open_affine_cm
+        for form in per-joint whole-body auto; do record "$work/$form" open_error_cm; done
         record "$work/floor" open_identity_cm
+        record "$work/auto" identity_cm offset_cm affine_cm error_cm
+        record "$work/floor" identity_cm
         for what in all leaves; do
             for who in identity offset affine error; do printf '%s ' "$(angle "$work/auto" $who $what)" >>"$work/all"; done
             printf '%s ' "$(angle "$work/floor" identity $what)" >>"$work/all"
         done
         end_record
         printf '| %s |' "$style"
-        for key in identity_cm offset_cm affine_cm; do number "$work/auto" $key; done
-        for form in per-joint whole-body; do number "$work/$form" error_cm; done
-        printf ' **%.1f** |' "$(value "$work/auto" error_cm)"
-        number "$work/floor" identity_cm
+        for key in open_identity_cm open_offset_cm open_affine_cm; do number "$work/auto" $key; done
+        for form in per-joint whole-body; do number "$work/$form" open_error_cm; done
+        printf ' **%.1f** |' "$(value "$work/auto" open_error_cm)"
+        number "$work/floor" open_identity_cm
         echo " $(word "$work/auto.train" alignment), $(word "$work/auto.train" model) |"
     done
     awk '{ for (i = 1; i <= NF; i++) sum[i] += $i / 7 }
@@ -69,14 +65,47 @@ xia() {
             printf "| **mean** | %.2f | %.2f | %.2f | %.2f | %.2f | **%.2f** | %.2f | |\n\n",
                 sum[1], sum[2], sum[3], sum[4], sum[5], sum[6], sum[7]
             print "Means over the 7 styles with both measures, cm\n"
-            print "| ends | identity | offset | affine | chosen | `--align in-step` | floor |\n|---|---|---|---|---|---|---|"
-            printf "| closed | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f |\n", sum[1], sum[2], sum[3], sum[6], sum[12], sum[7]
-            printf "| open | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f |\n", sum[8], sum[9], sum[10], sum[11], sum[13], sum[14]
-            print "\nMean angle of a joint to its target over the 7 styles, closed ends, degrees\n"
+            print "| ends | identity | offset | affine | chosen | floor |\n|---|---|---|---|---|---|"
+            printf "| open | %.2f | %.2f | %.2f | %.2f | %.2f |\n", sum[1], sum[2], sum[3], sum[6], sum[7]
+            printf "| closed | %.2f | %.2f | %.2f | %.2f | %.2f |\n", sum[8], sum[9], sum[10], sum[11], sum[12]
+            print "\nMean angle of a joint to its target over the 7 styles, open ends, degrees\n"
             print "| joints | identity | offset | affine | chosen | floor |\n|---|---|---|---|---|---|"
-            printf "| all | %.2f | %.2f | %.2f | **%.2f** | %.2f |\n", sum[15], sum[16], sum[17], sum[18], sum[19]
-            printf "| leaves: head, hands, toes | %.2f | %.2f | %.2f | **%.2f** | %.2f |\n", sum[20], sum[21], sum[22], sum[23], sum[24]
+            printf "| all | %.2f | %.2f | %.2f | **%.2f** | %.2f |\n", sum[13], sum[14], sum[15], sum[16], sum[17]
+            printf "| leaves: head, hands, toes | %.2f | %.2f | %.2f | **%.2f** | %.2f |\n", sum[18], sum[19], sum[20], sum[21], sum[22]
         }' "$work/all"
+}
+
+feet_table() {
+    local clips=$data/xia styles=(angry childlike depressed old proud sexy strutting) style clip feet strength
+    for style in "${styles[@]}"; do
+        "$kinesic" train translate --pair "$clips/neutral_01_000.bvh" "$clips/${style}_01_000.bvh" --out "$work/$style.kin" --json >"$work/train"
+    done
+    echo
+    echo "Feet: xia's styles on other walks, strengths .5 and 1; mean and worst of 14 results"
+    echo
+    echo "| clip | feet | in step, mean | worst | slide, mean | worst | jerk, mean | worst |"
+    echo "|---|---|---|---|---|---|---|---|"
+    for clip in cmu31/07_01 cmu31/08_01 cmu31/35_01 m21/style/DEPRESSED m21/style/STRUTTING-1; do
+        for feet in lock free; do
+            : >"$work/all"
+            for style in "${styles[@]}"; do
+                for strength in 0.5 1; do
+                    "$kinesic" apply "$work/$style.kin" "$data/$clip.bvh" --out "$work/out.bvh" --strength $strength --feet $feet --json \
+                        2>/dev/null >"$work/one"
+                    python3 - "$work/one" >>"$work/all" <<'PYTHON'
+import json, sys
+result = json.load(open(sys.argv[1]))
+before, after = result["source"], result["styled"]
+ratio = lambda key: after[key] / max(before[key], 1e-9)
+print(min(x for x in result["step"] if x is not None), ratio("foot_slide_cm_s"), ratio("jerk_m_s3"))
+PYTHON
+                done
+            done
+            awk -v clip="$clip" -v feet="$feet" 'NR == 1 { low = $1 }
+                { step += $1; slide += $2; jerk += $3; if ($1 < low) low = $1; if ($2 > far) far = $2; if ($3 > rough) rough = $3 }
+                END { printf "| %s | %s | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f |\n", clip, feet, step / NR, low, slide / NR, far, jerk / NR, rough }' "$work/all"
+        done
+    done
 }
 
 # child PERSON: trained on everybody else
@@ -139,11 +168,12 @@ people_table() {
         END { printf "| **mean** | %.2f | %.2f | %.2f | %.2f | |\n", sum[1], sum[2], sum[3], sum[4] }' "$work/all"
 }
 
-for part in "${@:-xia swap child people recognition}"; do
+for part in "${@:-xia swap feet child people recognition}"; do
     for table in $part; do
         case $table in
         xia) xia 000 001 ;;
         swap) xia 001 000 ;;
+        feet) feet_table ;;
         child) child_table ;;
         people) people_table ;;
         recognition) KINESIC_DATA=$data cargo run --release --locked -q -p kinesic-benches --bin recognition ;;

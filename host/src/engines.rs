@@ -2,7 +2,6 @@
 //! it. Only a learned clock and a stored motion belong to one engine each, and `apply` asks for these by name.
 
 use kinesic::Pack;
-use kinesic::engine::Controls;
 use kinesic::mechanics::Modulation;
 use kinesic::model::{
     ComponentsMeta, EmotionMeta, FaceMeta, LimitsMeta, LoadError, MechanicsMeta, ModelMeta, TranslatorMeta,
@@ -15,11 +14,12 @@ use crate::emotion::HostEmotion;
 use crate::face::HostFace;
 use crate::limit::{HostLimiter, LimitsModel};
 use crate::mechanics::{HostMechanics, decouple, modulate};
-use crate::rig::{MAX_ROWS, Rig, RigError};
+use crate::rig::{Rig, RigError};
+use crate::strength::Knobs;
 use crate::translate::{self, HostTranslator, Timing};
 
 /// Plays a clip on the pack's rig and at its frame rate, as on a live stream.
-pub type Play = fn(&Pack, &Rig, &Clip, Controls<MAX_ROWS>) -> Result<Clip, LoadError>;
+pub type Play = fn(&Pack, &Rig, &Clip, &Knobs) -> Result<Clip, LoadError>;
 
 /// How an engine plays clips.
 #[derive(Clone, Copy, Debug)]
@@ -114,8 +114,9 @@ impl Known for TranslatorMeta<'_> {
     }
 
     fn player(&self) -> Option<Player> {
-        let play: Play = |pack, rig, clip, controls| {
-            translate::play(pack, rig, clip, &translate::Settings { controls, timing: Timing::Keep })
+        let play: Play = |pack, rig, clip, knobs| {
+            let Knobs { controls, curve } = knobs.clone();
+            translate::play(pack, rig, clip, &translate::Settings { controls, curve, timing: Timing::Keep })
         };
         Some(Player { order: 0, plausible: self.strength, applies: true, play })
     }
@@ -152,8 +153,10 @@ impl Known for MechanicsMeta {
     }
 
     fn player(&self) -> Option<Player> {
-        let play: Play = |pack, rig, clip, Controls { strength, .. }| {
-            let (modulation, poses) = (Modulation { amount: strength, ..Modulation::default() }, rig.poses(clip));
+        // `kinesic modulate` has one amount for a clip, and so has the page.
+        let play: Play = |pack, rig, clip, knobs| {
+            let amount = knobs.controls.strength;
+            let (modulation, poses) = (Modulation { amount, ..Modulation::default() }, rig.poses(clip));
             Ok(rig.clip(&modulate(&poses, &decouple(pack, &poses)?, &modulation), clip.frame_time))
         };
         Some(Player { order: u8::MAX, plausible: [0.0, 2.0], applies: false, play })
@@ -186,8 +189,10 @@ impl Known for ComponentsMeta<'_> {
     }
 
     fn player(&self) -> Option<Player> {
-        let play: Play =
-            |pack, rig, clip, controls| components::play(pack, rig, clip, &components::Settings { controls });
+        let play: Play = |pack, rig, clip, knobs| {
+            let Knobs { controls, curve } = knobs.clone();
+            components::play(pack, rig, clip, &components::Settings { controls, curve })
+        };
         Some(Player { order: 1, plausible: self.strength, applies: true, play })
     }
 }

@@ -195,6 +195,7 @@ fn the_book_runs_as_written() {
         "your-clips",
         "your-skeleton",
         "model-size",
+        "edit",
         "export",
         "view",
         "precision",

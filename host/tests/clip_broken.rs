@@ -150,8 +150,8 @@ fn paths_that_are_no_clip() {
     let folder = tempfile::tempdir().expect("a folder");
     check("folder", &clip::read(folder.path()).expect_err("folder").to_string(), &["folder", "Name a .bvh"]);
     check("unknown", &message(b"once upon a time", "txt"), &["once upon", ".bvh", ".csv"]);
-    check("empty", &message(b"", "fbx"), &["an empty file", "BVH"]);
-    check("binary", &message(b"\x7fELF\0\0", "fbx"), &["binary", "BVH"]);
+    check("empty", &message(b"", "mb"), &["an empty file", "BVH"]);
+    check("binary", &message(b"\x7fELF\0\0", "mb"), &["binary", "BVH"]);
     let path: PathBuf = folder.path().join("really.txt");
     std::fs::write(&path, SOUND.replace("40", "90")).expect("written");
     // Content goes before extension.

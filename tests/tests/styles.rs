@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_host::prepare::Source;
 use kinesic_host::rig::Rig;
-use kinesic_host::translate::{NamedPair, Report, TrainOptions, TrainPair, evaluate, train};
+use kinesic_host::translate::{Alignment, NamedPair, Report, TrainOptions, TrainPair, evaluate, train};
 
 /// Trains on some pairs and measures on others, all on the rig of the first source.
 fn measure(trained_on: &[(PathBuf, PathBuf)], tested_on: &[(PathBuf, PathBuf)], fps: f64) -> Report {
@@ -37,22 +37,26 @@ fn xia_styles_on_an_unseen_take() {
         vec![(file("neutral"), file(style))]
     };
     let styles = ["angry", "childlike", "depressed", "old", "proud", "sexy", "strutting"];
-    let (mut error, mut affine, mut identity) = (0.0, 0.0, 0.0);
+    let (mut error, mut affine, mut closed) = (0.0, 0.0, [0.0; 2]);
     for style in styles {
         let report = measure(&pair(style, "000"), &pair(style, "001"), 60.0);
+        // The measure itself, found independently: 17.0 and 11.5 (or better) on these clips, closed ends.
+        closed[0] += report.errors.identity_cm / 7.0;
+        closed[1] += report.errors.affine_cm / 7.0;
+        // Walks are in step, and judged with open ends.
+        let errors = report.errors.judged(Alignment::InStep);
         println!(
             "{style}: {:.2} cm, affine {:.2}, identity {:.2}",
-            report.errors.error_cm, report.errors.affine_cm, report.errors.identity_cm
+            errors.error_cm, errors.affine_cm, errors.identity_cm
         );
-        assert!(report.errors.error_cm < report.errors.identity_cm, "{style} is worse than doing nothing");
-        error += report.errors.error_cm / 7.0;
-        affine += report.errors.affine_cm / 7.0;
-        identity += report.errors.identity_cm / 7.0;
+        assert!(errors.error_cm < errors.identity_cm, "{style} is worse than doing nothing");
+        error += errors.error_cm / 7.0;
+        affine += errors.affine_cm / 7.0;
     }
-    // The measure itself, found independently: 17.0 and 11.5 (or better) on these clips.
-    assert!((identity - 17.0).abs() < 0.3, "{identity}");
-    assert!(affine < 11.6, "{affine}");
-    assert!(error < 7.5, "{error}");
+    assert!((closed[0] - 17.0).abs() < 0.3 && closed[1] < 11.6, "{closed:?}");
+    // docs/quality.md: 4.23 and 7.42; another take is as far away as 4.22.
+    assert!(error < 4.6, "{error}");
+    assert!(error < 0.65 * affine, "{error} {affine}");
 }
 
 #[test]

@@ -7,7 +7,7 @@
 //! | [`read`], [`read_with`] | any accepted file to a [`Clip`], chosen by content |
 //! | [`formats`] | the table of readers |
 //! | [`bvh`] | the BVH parser and [`Clip::write_bvh`] |
-//! | [`write`](Clip::write) | a clip to a file of the format that its name says: BVH, glTF ([`gltf`]), table of angles ([`angles`]) |
+//! | [`write`](Clip::write) | a clip to a file of the format that its name says: BVH, glTF ([`gltf`]), tables of angles ([`angles`]) and of positions (`positions`) |
 //! | [`fbx`] | FBX: bones and their animation |
 //! | [`kinect`] | Kinect CSV recordings: positions, resampled and fitted with a skeleton |
 //! | [`map`] | which joint is the pelvis, the left knee, ...: known layouts, map files, mirror partners |
@@ -29,6 +29,7 @@ pub mod map;
 mod measure;
 mod mirror;
 mod notes;
+pub(crate) mod positions;
 mod read;
 mod resample;
 mod settle;

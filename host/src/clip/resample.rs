@@ -76,12 +76,17 @@ impl Clip {
         if whole >= 1.0 && drift < RATIO_TOLERANCE {
             return Ok(self.every(whole as usize, 1.0 / fps));
         }
-        let n = self.skeleton.len();
         let count = 1 + (self.duration() * fps + 1e-6).floor() as usize;
+        Ok(self.sampled((0..count).map(|frame| frame as f64 * ratio), 1.0 / fps))
+    }
+
+    /// The clip at these times, in frames; past its end it stays there. Rotations are interpolated on the great arc, the rest linearly.
+    pub fn sampled(&self, times: impl ExactSizeIterator<Item = f64>, frame_time: f64) -> Clip {
+        let rotations = Vec::with_capacity(times.len() * self.skeleton.len());
         let last = self.frames().saturating_sub(1);
-        let mut out = Clip { root: Vec::new(), rotations: Vec::with_capacity(count * n), ..self.shell(1.0 / fps) };
-        for frame in 0..count {
-            let at = (frame as f64 * ratio).min(last as f64);
+        let mut out = Clip { root: Vec::with_capacity(times.len()), rotations, ..self.shell(frame_time) };
+        for at in times {
+            let at = at.clamp(0.0, last as f64);
             let (before, part) = (at.floor() as usize, at.fract());
             let after = (before + 1).min(last);
             if let (Some(a), Some(b)) = (self.root.get(before), self.root.get(after)) {
@@ -97,7 +102,7 @@ impl Clip {
                 to.extend(a.iter().zip(b).map(|(a, b)| a + part * (b - a)));
             }
         }
-        Ok(out)
+        out
     }
 
     /// Every `step`-th frame.

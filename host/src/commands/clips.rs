@@ -198,12 +198,17 @@ impl Pairs {
 /// `walk.bvh`, `walks/` (every .bvh and .csv in it), `manifest.tsv` (its column `file`, paths from the table's folder), or
 /// `manifest.tsv:label=body-mechanics,skeleton=cmu31` (the rows that fulfil all conditions).
 pub fn clip_paths(sets: &[PathBuf]) -> miette::Result<Vec<PathBuf>> {
+    paths_of(sets, &READERS.iter().flat_map(|reader| reader.extensions).copied().collect::<Vec<_>>())
+}
+
+/// The same; of a folder what has one of these extensions.
+pub fn paths_of(sets: &[PathBuf], extensions: &[&str]) -> miette::Result<Vec<PathBuf>> {
     let mut paths: Vec<PathBuf> = Vec::new();
     let mut known: HashSet<PathBuf> = HashSet::new();
     for set in sets {
         let text = set.display().to_string();
         let found = if set.is_dir() {
-            folder_clips(set)?
+            folder_clips(set, extensions)?
         } else if let Some((table, conditions)) = text.split_once(".tsv") {
             table_clips(Path::new(&format!("{table}.tsv")), conditions.strip_prefix(':').unwrap_or(conditions))?
         } else {
@@ -218,19 +223,19 @@ pub fn clip_paths(sets: &[PathBuf]) -> miette::Result<Vec<PathBuf>> {
     Ok(paths)
 }
 
-fn folder_clips(folder: &Path) -> miette::Result<Vec<PathBuf>> {
+fn folder_clips(folder: &Path, extensions: &[&str]) -> miette::Result<Vec<PathBuf>> {
     let refuse = |error: std::io::Error| miette!("{}: cannot be read: {error}", folder.display());
     let mut paths = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(refuse)? {
         let path = entry.map_err(refuse)?.path();
-        let known = || READERS.iter().flat_map(|reader| reader.extensions);
-        let is_clip = |e: &std::ffi::OsStr| known().any(|extension| e.eq_ignore_ascii_case(extension));
+        let is_clip = |e: &std::ffi::OsStr| extensions.iter().any(|extension| e.eq_ignore_ascii_case(extension));
         if path.extension().is_some_and(is_clip) {
             paths.push(path);
         }
     }
     if paths.is_empty() {
-        return Err(miette!(help = "name a folder with .bvh or .csv files", "{}: there is no clip", folder.display()));
+        let help = format!("name a folder with files of these names: .{}", extensions.join(", ."));
+        return Err(miette!(help = help, "{}: there is no clip", folder.display()));
     }
     paths.sort();
     Ok(paths)

@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use kinesic::{Pipeline, PipelineState, Pose};
-use kinesic_host::align::Ends;
 use kinesic_host::clip::{Canonical, Clip, JointMap};
 use kinesic_host::gait::{Manner, walk};
 use kinesic_host::measure::turns::Turns;
@@ -15,7 +14,7 @@ use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_host::retarget::retarget;
 use kinesic_host::rig::{MAX_JOINTS, MAX_ROWS, Rig};
 use kinesic_host::translate::{
-    FormChoice, HostTranslator, NamedPair, TrainOptions, TrainPair, evaluate, plausible, train,
+    FormChoice, HostTranslator, NamedPair, OPEN, TrainOptions, TrainPair, evaluate, plausible, train,
 };
 use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
@@ -64,8 +63,8 @@ struct Summary {
     /// The same in degrees, over all joints and over leaves.
     error_degrees: [f64; 2],
     identity_degrees: [f64; 2],
-    offset_degrees: [f64; 2],
-    affine_degrees: [f64; 2],
+    offset_degrees: Option<[f64; 2]>,
+    affine_degrees: Option<[f64; 2]>,
     floor_degrees: [f64; 2],
     pack_bytes: usize,
     multiply_adds_per_frame: usize,
@@ -125,19 +124,21 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let translator = HostTranslator::load(&pack).into_diagnostic()?;
     let source = rig.poses(&unseen);
     let (styled, microseconds) = play_timed(&translator, &rig, &source)?;
-    let report = evaluate(
+    let errors = evaluate(
         &pack,
         &rig,
         &trained.baselines,
         Some(&turns),
         &[NamedPair { source: ("unseen", &unseen), target: ("expected", &expected) }],
     )
-    .into_diagnostic()?;
+    .into_diagnostic()?
+    .errors
+    .judged(trained.alignment);
     // Two takes of the same manner: no translation can be expected to come nearer.
     let take = |clip| Measurable::new(&rig, clip);
-    let floor = compare(&rig, &take(&again), &take(&expected), Ends::Closed).into_diagnostic()?;
+    let floor = compare(&rig, &take(&again), &take(&expected), OPEN).into_diagnostic()?;
     let angles = |degrees: &Degrees| [degrees.all, degrees.leaves];
-    let simpler = |degrees: &Option<Degrees>| degrees.as_ref().map_or([f64::NAN; 2], angles);
+    let simpler = |degrees: &Option<Degrees>| degrees.as_ref().map(angles);
     let clips: [(&str, &Clip); 4] =
         [("neutral.bvh", &neutral), ("weary.bvh", &weary), ("unseen.bvh", &unseen), ("expected.bvh", &expected)];
     for (name, clip) in clips {
@@ -151,15 +152,15 @@ pub fn run(args: &Args) -> miette::Result<()> {
     bar.finish_and_clear();
     let summary = Summary {
         folder: args.out.display().to_string(),
-        error_cm: report.errors.error_cm,
-        identity_cm: report.errors.identity_cm,
-        offset_cm: report.errors.offset_cm,
-        affine_cm: report.errors.affine_cm,
+        error_cm: errors.error_cm,
+        identity_cm: errors.identity_cm,
+        offset_cm: errors.offset_cm,
+        affine_cm: errors.affine_cm,
         floor_cm: floor.cm,
-        error_degrees: angles(&report.errors.degrees.error),
-        identity_degrees: angles(&report.errors.degrees.identity),
-        offset_degrees: simpler(&report.errors.degrees.offset),
-        affine_degrees: simpler(&report.errors.degrees.affine),
+        error_degrees: angles(&errors.degrees.error),
+        identity_degrees: angles(&errors.degrees.identity),
+        offset_degrees: simpler(&errors.degrees.offset),
+        affine_degrees: simpler(&errors.degrees.affine),
         floor_degrees: angles(&floor.degrees),
         pack_bytes: bytes.len(),
         multiply_adds_per_frame: translator.multiply_adds(),
@@ -231,14 +232,18 @@ fn nod((clip, map): &Mapped) -> miette::Result<f64> {
 fn print(s: &Summary, folder: &Path) {
     println!("A walk that was not in the training, translated to a weary one.");
     println!(
-        "Aligned RMS joint distance to the weary walk that belongs to it, cm; mean angle, degrees: all joints, leaves"
+        "Aligned RMS joint distance to the weary walk that belongs to it, open ends, cm; mean angle, degrees: all joints, leaves"
     );
-    let row = |name: &str, cm: f64, [all, leaves]: [f64; 2]| println!("  {name:<24} {cm:6.2} {all:8.2} {leaves:8.2}");
-    row("doing nothing", s.identity_cm, s.identity_degrees);
+    let row = |name: &str, cm: f64, degrees: Option<[f64; 2]>| {
+        let [all, leaves] =
+            [0, 1].map(|of| degrees.map_or_else(|| "-".to_owned(), |angles| format!("{:.2}", angles[of])));
+        println!("  {name:<24} {cm:6.2} {all:>8} {leaves:>8}");
+    };
+    row("doing nothing", s.identity_cm, Some(s.identity_degrees));
     row("mean offset", s.offset_cm, s.offset_degrees);
     row("affine map per joint", s.affine_cm, s.affine_degrees);
-    row("kinesic", s.error_cm, s.error_degrees);
-    row("another take (floor)", s.floor_cm, s.floor_degrees);
+    row("kinesic", s.error_cm, Some(s.error_degrees));
+    row("another take (floor)", s.floor_cm, Some(s.floor_degrees));
     println!("Pack                       {:6} bytes", s.pack_bytes);
     println!("Multiply-adds per frame    {:6} and the rig's", s.multiply_adds_per_frame);
     println!(

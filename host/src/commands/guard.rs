@@ -1,6 +1,7 @@
 //! Outputs that would replace an input, or each other: refused before any work, unless `--overwrite` says otherwise.
 
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::ArgMatches;
 use miette::miette;
@@ -9,6 +10,19 @@ use miette::miette;
 const OUTPUTS: [&str; 4] = ["out", "report", "landmarks_out", "scores"];
 /// Those of `decouple`, whose names are inputs elsewhere.
 const PARTS: [&str; 2] = ["mechanics", "expressive"];
+
+/// `--overwrite`, of the process's one command line.
+static OVERWRITES: AtomicBool = AtomicBool::new(false);
+
+/// Takes `--overwrite` from the command line.
+pub fn set_overwrites(overwrites: bool) {
+    OVERWRITES.store(overwrites, Ordering::Relaxed);
+}
+
+/// Whether inputs may be replaced.
+pub fn overwrites() -> bool {
+    OVERWRITES.load(Ordering::Relaxed)
+}
 
 /// Refuses a command line in which a file is written that it reads too, or written twice.
 pub fn check(matches: &ArgMatches) -> miette::Result<()> {
@@ -44,7 +58,7 @@ pub fn check(matches: &ArgMatches) -> miette::Result<()> {
 }
 
 /// Whether two paths name one file, which need not be there yet.
-fn same(a: &Path, b: &Path) -> bool {
+pub fn same(a: &Path, b: &Path) -> bool {
     #[cfg(unix)]
     {
         use std::os::unix::fs::MetadataExt;

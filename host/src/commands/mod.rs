@@ -5,11 +5,13 @@ mod print;
 
 mod angles;
 mod apply;
+mod batch;
 mod blend;
 mod clips;
 mod completions;
 mod decouple;
 mod demo;
+mod edit;
 mod eval;
 mod export;
 mod expression;
@@ -27,6 +29,7 @@ mod precision;
 mod quantize;
 mod robot;
 mod score;
+mod sheet;
 mod suggest;
 mod synth;
 mod train;
@@ -74,9 +77,11 @@ enum Command {
     View(view::Args),
     Quantize(quantize::Args),
     Score(score::Args),
+    Sheet(sheet::Args),
     #[command(subcommand)]
     Robot(robot::Action),
     Limits(limits::Args),
+    Edit(edit::Args),
     Export(export::Args),
     Completions(completions::Args),
     Face(face::Args),
@@ -89,6 +94,7 @@ enum Command {
 pub fn run() -> miette::Result<()> {
     let matches = Cli::command().get_matches();
     let cli = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
+    guard::set_overwrites(cli.overwrite);
     if !cli.overwrite {
         guard::check(&matches)?;
     }
@@ -114,8 +120,10 @@ fn dispatch(cli: Cli) -> miette::Result<()> {
         Command::View(args) => view::run(&args),
         Command::Quantize(args) => quantize::run(&args),
         Command::Score(args) => score::run(&args),
+        Command::Sheet(args) => sheet::run(&args),
         Command::Robot(action) => robot::run(&action),
         Command::Limits(args) => limits::run(&args),
+        Command::Edit(args) => edit::run(&args),
         Command::Export(args) => export::run(&args),
         Command::Completions(args) => completions::run(&args),
         Command::Face(args) => face::run(&args),

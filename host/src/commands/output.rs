@@ -40,9 +40,10 @@ pub fn check_output(path: &Path, extension: &str) -> miette::Result<()> {
 }
 
 /// Formats of a robot's motions.
-const MOVES: [&str; 5] = ["csv", "json", "jsonl", "yaml", "yml"];
+pub const MOVES: [&str; 5] = ["csv", "json", "jsonl", "yaml", "yml"];
 
-fn is_moves(path: &Path) -> bool {
+/// Whether the name is that of a robot's motion.
+pub fn is_moves(path: &Path) -> bool {
     path.extension().is_some_and(|found| MOVES.iter().any(|own| found.eq_ignore_ascii_case(own)))
 }
 
@@ -52,6 +53,13 @@ pub fn check_moves(path: &Path) -> miette::Result<()> {
         return Err(miette!(
             help = format!("name it {}", path.with_extension("csv").display()),
             "{}: the output is a .csv, .json, .jsonl or .yaml file",
+            path.display()
+        ));
+    }
+    if Format::of(path) == Some(Format::Positions) {
+        return Err(miette!(
+            help = "write the moves first, then: kinesic export MOVES.csv --robot ROBOT.kin --out x.positions.csv",
+            "{}: the output is a move in the robot's joints, expected another name than .positions.csv",
             path.display()
         ));
     }
@@ -70,14 +78,15 @@ pub fn check_motion(path: &Path, machine: bool) -> miette::Result<()> {
     if !machine && Format::of(path).is_none() {
         return Err(miette!(
             help = format!("name it {}", path.with_extension("bvh").display()),
-            "{}: the output is a .bvh, .glb, .gltf or .csv file",
+            "{}: the output is a .bvh, .glb, .gltf, .csv (angles) or .positions.csv file",
             path.display()
         ));
     }
     check_folder(path)
 }
 
-fn check_folder(path: &Path) -> miette::Result<()> {
+/// Refuses a path whose folder is not there.
+pub fn check_folder(path: &Path) -> miette::Result<()> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if !folder.is_dir() {
         return Err(miette!(
@@ -93,8 +102,10 @@ fn check_folder(path: &Path) -> miette::Result<()> {
 /// Writes a motion in the format that its name says: a robot's in the numbers that its servos take, with what else was in the file that it
 /// comes from.
 pub fn write_motion(path: &Path, clip: &Clip, machine: Option<&Machine>, from: Option<&Moves>) -> miette::Result<()> {
-    let picture = Format::of(path).is_some_and(|format| format != Format::Csv);
+    let format = Format::of(path);
+    let picture = format.is_some_and(|format| format != Format::Csv);
     match machine {
+        Some(machine) if format == Some(Format::Positions) => write_whole(path, machine.positions(clip).as_bytes()),
         Some(machine) if !picture => Ok(machine.moves(clip, from).write(path)?),
         _ => clip.write(path).into_diagnostic(),
     }

@@ -14,6 +14,7 @@
 //! | `packed` | the robot of a pack as a [`Robot`] |
 //! | `retarget` | a person's motion on a robot, within its limits |
 //! | `motion` | a motion in the numbers of a file -> coordinates -> what the servos take |
+//! | `positions` | where its joints are while it moves |
 //! | `error` | [`RobotError`]: place, what was found, what to do |
 
 mod bounds;
@@ -25,6 +26,7 @@ mod machine;
 mod mjcf;
 mod motion;
 mod packed;
+mod positions;
 pub mod retarget;
 mod servos;
 mod shape;

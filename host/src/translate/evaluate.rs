@@ -5,7 +5,7 @@ use kinesic::model::LoadError;
 use serde::Serialize;
 
 use super::baseline;
-use super::correspond::OPEN;
+use super::correspond::{Alignment, OPEN};
 use super::play::{Settings, play};
 use crate::align::{AlignError, Ends};
 use crate::clip::Clip;
@@ -86,6 +86,23 @@ impl Errors {
             open_affine_cm,
             degrees: Angles::new(closed.map(|d| d.degrees), turns),
             open_degrees: Angles::new(open.map(|d| d.degrees.brief()), turns),
+        }
+    }
+}
+
+impl Errors {
+    /// The figures by which a pack is judged whose clips correspond so: with open ends for what is in step, since the ends do not match.
+    pub fn judged(&self, alignment: Alignment) -> Errors {
+        if alignment != Alignment::InStep {
+            return self.clone();
+        }
+        Errors {
+            error_cm: self.open_error_cm,
+            identity_cm: self.open_identity_cm,
+            offset_cm: self.open_offset_cm,
+            affine_cm: self.open_affine_cm,
+            degrees: self.open_degrees.clone(),
+            ..self.clone()
         }
     }
 }

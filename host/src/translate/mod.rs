@@ -3,6 +3,7 @@
 //! | file | holds |
 //! |---|---|
 //! | `correspond` | which styled moment belongs to which source frame |
+//! | `cyclic` | whether a motion is a walk, which is aligned in step |
 //! | `dataset` | training sequences: source frames and wanted output |
 //! | `dynamics` | candidate dynamics: banks of poles, simulation |
 //! | [`identify`] | dynamics from data: impulse response, truncation, modal form |
@@ -14,6 +15,7 @@
 mod baseline;
 mod candidate;
 mod correspond;
+mod cyclic;
 mod dataset;
 mod dynamics;
 mod evaluate;
@@ -28,12 +30,12 @@ mod strength;
 mod train;
 
 pub use candidate::{AFFINE, Candidate};
-pub use correspond::Alignment;
+pub use correspond::{Alignment, OPEN};
 pub use dynamics::{Dynamics, Poles};
 pub use evaluate::{Angles, Errors, EvaluateError, NamedPair, PairReport, Report, evaluate};
 pub use model::{BankModel, TimingModel, TranslatorModel};
 pub use moments::Base;
-pub use play::{HostTranslator, Settings, TIMING_STRENGTH, Timing, play};
+pub use play::{HostTranslator, Settings, TIMING_STRENGTH, Timing, play, play_on_clock, retime};
 pub use strength::plausible;
 pub use train::{
     DEFAULT_ORDER, FormChoice, Stage, TrainError, TrainOptions, TrainPair, Trained, partners, train, train_kept,

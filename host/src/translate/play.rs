@@ -7,6 +7,7 @@ use nalgebra::UnitQuaternion;
 
 use crate::clip::Clip;
 use crate::rig::{MAX_JOINTS, MAX_ROWS, Rig};
+use crate::strength::{Curve, Knobs};
 
 /// Filter states that the host steps.
 const MAX_STATES: usize = 16_384;
@@ -28,45 +29,54 @@ pub enum Timing {
 }
 
 /// How a pack is played.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Settings {
     /// Strength and mask.
     pub controls: Controls<MAX_ROWS>,
+    /// A strength that changes while the clip plays, instead of that of `controls`.
+    pub curve: Option<Curve>,
     /// The clock.
     pub timing: Timing,
 }
 
-impl Default for Settings {
-    fn default() -> Self {
-        Self { controls: Controls::default(), timing: Timing::Keep }
-    }
-}
-
 /// Translates a clip on the pack's rig and at its frame rate, from the state that holding the first frame leads to.
 pub fn play(pack: &Pack, rig: &Rig, source: &Clip, settings: &Settings) -> Result<Clip, LoadError> {
-    let translator = HostTranslator::load(pack)?;
-    let mut state = Box::new(TranslatorState::new());
-    state.controls = settings.controls;
-    let mut clock = Vec::with_capacity(source.frames());
-    let mut now = 0.0;
-    let strength = settings.controls.strength.clamp(-TIMING_STRENGTH, TIMING_STRENGTH);
-    let styled = rig.play(source, |frame| {
-        if clock.is_empty() {
-            translator.start(&mut state, frame);
-        }
-        let timing = translator.step(&mut state, frame);
-        clock.push(now);
-        // Strength acts on the clock as on the pose (up to `TIMING_STRENGTH`): 0 keeps it.
-        now += f64::from(timing.duration).powf(f64::from(strength));
-    });
+    let (styled, clock) = play_on_clock(pack, rig, source, settings)?;
     Ok(match settings.timing {
         Timing::Keep => styled,
         Timing::Learned => retime(rig, &styled, &clock),
     })
 }
 
+/// The clip frame for frame, and when each frame is due by the learned timing, in frames, rising.
+pub fn play_on_clock(
+    pack: &Pack,
+    rig: &Rig,
+    source: &Clip,
+    settings: &Settings,
+) -> Result<(Clip, Vec<f64>), LoadError> {
+    let translator = HostTranslator::load(pack)?;
+    let mut state = Box::new(TranslatorState::new());
+    state.controls = settings.controls;
+    let mut clock = Vec::with_capacity(source.frames());
+    let mut now = 0.0;
+    let knobs = Knobs { controls: settings.controls, curve: settings.curve.clone() };
+    let styled = rig.play(source, |frame| {
+        state.controls.strength = knobs.strength(clock.len(), source.frame_time);
+        if clock.is_empty() {
+            translator.start(&mut state, frame);
+        }
+        let timing = translator.step(&mut state, frame);
+        clock.push(now);
+        // Strength acts on the clock as on the pose (up to `TIMING_STRENGTH`): 0 keeps it.
+        let strength = state.controls.strength.clamp(-TIMING_STRENGTH, TIMING_STRENGTH);
+        now += f64::from(timing.duration).powf(f64::from(strength));
+    });
+    Ok((styled, clock))
+}
+
 /// The motion at whole frames of `clock`, which says when each frame is due, in frames, rising.
-fn retime(rig: &Rig, clip: &Clip, clock: &[f64]) -> Clip {
+pub fn retime(rig: &Rig, clip: &Clip, clock: &[f64]) -> Clip {
     let Some(end) = clock.last().filter(|_| clip.frames() > 1) else { return clip.clone() };
     let mut next = 1;
     let due = (0..=end.floor() as usize).map(|frame| {

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use super::baseline;
 use super::candidate::{AFFINE, Candidate, JUDGE, MACHINE_JUDGE, QUICK};
 use super::correspond::{Alignment, OPEN, correspond, correspond_output, correspond_plainly};
+use super::cyclic::walks;
 use super::dataset::{Correspondence, Mirror, Sequence};
 use super::dynamics::Poles;
 use super::fit::Problem;
@@ -37,7 +38,7 @@ pub struct TrainOptions {
     pub order: Option<usize>,
     /// Form, chosen by validation unless given.
     pub form: FormChoice,
-    /// Way in which the clips correspond, chosen by the error on the training pairs unless given.
+    /// Way in which the clips correspond: in step for walks, else chosen by the error on the training pairs, unless given.
     pub alignment: Option<Alignment>,
     /// Train on mirrored copies too; chosen by validation unless given.
     pub mirror: Option<bool>,
@@ -161,13 +162,15 @@ pub fn train_kept(
     }
     progress(Stage::Align);
     let partners = partners(rig);
-    let ways = options.alignment.map_or_else(|| Alignment::of(rig), |way| vec![way]);
-    let align = |way| aligned(way, rig, pairs, &partners, fps);
+    let ways = options.alignment.map_or_else(|| ways(rig, pairs), |way| vec![way]);
+    // Alone, what is in step is judged as it will be; beside others all are judged alike.
+    let ends = if ways == [Alignment::InStep] { OPEN } else { Ends::Closed };
+    let align = |way| aligned((way, ends), rig, pairs, &partners, fps);
     let tried: Vec<(Alignment, f64, Option<Vec<Sequence>>)> = ways
         .par_iter()
         .map(|way| {
             let mut made = None;
-            let error = cache.number(&format!("align {way:?}"), || {
+            let error = cache.number(&format!("align {way:?} {ends:?}"), || {
                 let (error, sequences) = align(*way)?;
                 made = Some(sequences);
                 Ok(error)
@@ -239,6 +242,13 @@ pub fn train_kept(
     })
 }
 
+/// The ways to try: in step alone where most pairs are walks, since a walk whose left answers right can neither be blended nor masked.
+fn ways(rig: &Rig, pairs: &[TrainPair]) -> Vec<Alignment> {
+    let both_walk = |pair: &&TrainPair| walks(rig, &pair.source) && walks(rig, &pair.target);
+    let walking = pairs.iter().filter(both_walk).count();
+    if 2 * walking > pairs.len() { vec![Alignment::InStep] } else { Alignment::of(rig) }
+}
+
 /// Aligned RMS joint distance of what a candidate makes of the folds that it has not seen, root mean square of the pairs, m.
 fn held_out_error(
     rig: &Rig,
@@ -277,7 +287,7 @@ pub fn partners(rig: &Rig) -> Vec<usize> {
 /// Sequences of all pairs under one way of alignment, refined, and the error on the pairs, m, of a small model that has not
 /// seen the block it speaks of.
 fn aligned(
-    way: Alignment,
+    (way, ends): (Alignment, Ends),
     rig: &Rig,
     pairs: &[TrainPair],
     partners: &[usize],
@@ -303,7 +313,7 @@ fn aligned(
         current = sequences(&|index, pair| correspond_output(way, &styled[index], &pair.target, fps))?;
     }
     let judge = if rig.frames().travels() { JUDGE } else { MACHINE_JUDGE };
-    Ok((held_out_error(rig, &Problem::new(rig, &current, &[], fps), &judge, pairs, Ends::Closed)?, current))
+    Ok((held_out_error(rig, &Problem::new(rig, &current, &[], fps), &judge, pairs, ends)?, current))
 }
 
 impl TrainPair {

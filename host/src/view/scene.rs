@@ -124,7 +124,7 @@ impl<'p> Player<'p> {
         let checked = &source.slice(0..CHECKED);
         let controls = Controls { strength: STRENGTH, ..Controls::default() };
         let refuse = |error| ViewError::Pack { name: self.of.name.clone(), error };
-        let mut played = (self.player.play)(&self.pack, &self.rig, checked, controls).map_err(refuse)?;
+        let mut played = (self.player.play)(&self.pack, &self.rig, checked, &controls.into()).map_err(refuse)?;
         // A machine's servos keep their limits, as on the device.
         if !self.rig.frames().travels() {
             let limited = limit::play(&self.pack, &self.rig, &played).map_err(refuse)?;

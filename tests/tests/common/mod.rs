@@ -5,7 +5,7 @@ use kinesic_host::clip::{Clip, JointMap};
 use kinesic_host::gait::{Manner, walk};
 use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_host::rig::Rig;
-use kinesic_host::translate::{FormChoice, TrainOptions, TrainPair, Trained, train};
+use kinesic_host::translate::{Alignment, FormChoice, TrainOptions, TrainPair, Trained, train};
 
 pub const FPS: f64 = 60.0;
 
@@ -31,7 +31,9 @@ pub fn trained(form: FormChoice, order: usize) -> Trained {
         source: locals(&neutral(1)),
         target: locals(&weary(2)),
     };
-    let options = TrainOptions { form, order: Some(order), mirror: Some(false), ..TrainOptions::default() };
+    // The alignment of the golden packs.
+    let alignment = Some(Alignment::Warp);
+    let options = TrainOptions { form, order: Some(order), mirror: Some(false), alignment };
     train(&rig, &[pair], "weary", FPS, &options, &|_| {}).unwrap()
 }
 

@@ -40,7 +40,7 @@ pub enum WriteError {
         error: String,
     },
     /// A name that says no format.
-    #[error("{}: motions are written as .bvh, .glb, .gltf or .csv. Name it {}", path.display(), path.with_extension("bvh").display())]
+    #[error("{}: motions are written as .bvh, .glb, .gltf, .csv (angles) or .positions.csv. Name it {}", path.display(), path.with_extension("bvh").display())]
     Format {
         /// The file that was to be written.
         path: PathBuf,

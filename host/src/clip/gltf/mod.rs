@@ -7,6 +7,7 @@
 //! | animation | one key a frame at `frame / rate` s, from 0 to [`Clip::duration`], linear; a rotation for every joint |
 //! | root motion | the translation of node 0, in the world; nothing else moves |
 //! | quaternions | `x y z w`, of the two signs the one nearer to the frame before |
+//! | names | scene and animation: the file's; nodes: the joints' |
 //! | body | one octahedron a bone, all of one mesh, skinned to the joints (`bones`) |
 //! | `asset.extras` | `frame_rate`, `frames`, `duration_s`, `unit`, `root_motion` |
 //!
@@ -21,10 +22,14 @@ pub use read::{parse, read};
 
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
+use nalgebra::{UnitQuaternion, Vector4};
 use serde_json::{Value, json};
 
 use super::Clip;
 use super::bvh::write::{WriteError, check};
+
+/// Name of a motion that is not written to a file.
+const UNNAMED: &str = "motion";
 
 const FLOAT: u32 = 5126;
 const U16: u32 = 5123;
@@ -32,9 +37,14 @@ const VERTICES: u32 = 34_962;
 const INDICES: u32 = 34_963;
 
 impl Clip {
-    /// A binary glTF file. Refuses what the BVH writer refuses.
+    /// A binary glTF file whose motion has no name of its own. Refuses what the BVH writer refuses.
     pub fn to_glb(&self) -> Result<Vec<u8>, WriteError> {
-        let (document, buffer) = document(self, None)?;
+        self.to_glb_named(UNNAMED)
+    }
+
+    /// As [`Clip::to_glb`]; scene and animation have the name.
+    pub fn to_glb_named(&self, name: &str) -> Result<Vec<u8>, WriteError> {
+        let (document, buffer) = document(self, name, None)?;
         let mut text = document.to_string().into_bytes();
         text.resize(text.len().next_multiple_of(4), b' ');
         let length = 12 + 8 + text.len() + 8 + buffer.len();
@@ -53,9 +63,14 @@ impl Clip {
 
     /// A glTF file as text, with its numbers in it.
     pub fn to_gltf(&self) -> Result<String, WriteError> {
-        let (_, buffer) = document(self, None)?;
+        self.to_gltf_named(UNNAMED)
+    }
+
+    /// As [`Clip::to_gltf`]; scene and animation have the name.
+    pub fn to_gltf_named(&self, name: &str) -> Result<String, WriteError> {
+        let (_, buffer) = document(self, name, None)?;
         let uri = format!("data:application/octet-stream;base64,{}", BASE64_STANDARD.encode(&buffer));
-        Ok(document(self, Some(uri))?.0.to_string())
+        Ok(document(self, name, Some(uri))?.0.to_string())
     }
 }
 
@@ -104,7 +119,12 @@ impl Buffer {
     }
 }
 
-fn document(clip: &Clip, uri: Option<String>) -> Result<(Value, Vec<u8>), WriteError> {
+/// A quaternion of length 1, as glTF asks for: what the device computes in singles is a millionth off.
+fn unit(turn: &UnitQuaternion<f64>) -> Vector4<f64> {
+    turn.coords.try_normalize(1e-9).unwrap_or(turn.coords)
+}
+
+fn document(clip: &Clip, name: &str, uri: Option<String>) -> Result<(Value, Vec<u8>), WriteError> {
     check(clip)?;
     let joints = clip.skeleton.len();
     let mut smooth = clip.clone();
@@ -118,7 +138,7 @@ fn document(clip: &Clip, uri: Option<String>) -> Result<(Value, Vec<u8>), WriteE
     let mut channels = vec![json!({"sampler": 0, "target": {"node": 0, "path": "translation"}})];
     for joint in 0..joints {
         let rotations: Vec<f32> =
-            (0..clip.frames()).flat_map(|frame| smooth.pose(frame)[joint].coords.map(|v| v as f32).data.0[0]).collect();
+            (0..clip.frames()).flat_map(|frame| unit(&smooth.pose(frame)[joint]).map(|v| v as f32).data.0[0]).collect();
         let output = buffer.floats(("VEC4", 4), &rotations, None, false);
         channels.push(json!({"sampler": samplers.len(), "target": {"node": joint, "path": "rotation"}}));
         samplers.push(json!({"input": times, "output": output, "interpolation": "LINEAR"}));
@@ -139,9 +159,9 @@ fn document(clip: &Clip, uri: Option<String>) -> Result<(Value, Vec<u8>), WriteE
             "root_motion": "translation of node 0",
         }},
         "scene": 0,
-        "scenes": [{"nodes": [0, joints]}],
+        "scenes": [{"name": name, "nodes": [0, joints]}],
         "nodes": nodes,
-        "animations": [{"name": "motion", "channels": channels, "samplers": samplers}],
+        "animations": [{"name": name, "channels": channels, "samplers": samplers}],
         "meshes": [mesh],
         "skins": [skin],
         "materials": [{"name": "bone", "pbrMetallicRoughness": {"baseColorFactor": [0.25, 0.45, 0.75, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.8}}],

@@ -14,6 +14,7 @@ use super::tracks::{Tracks, rate, tracks};
 use crate::clip::bvh::MAX_JOINTS;
 use crate::clip::{Clip, Joint, ReadError, ReadOptions, Skeleton, settle};
 use crate::files;
+use crate::quietly::quietly;
 
 /// Most frames that are made of keys.
 const MOST: f64 = 1e6;
@@ -33,7 +34,8 @@ pub fn parse(bytes: &[u8], folder: Option<&Path>) -> Result<Clip, String> {
     if bytes.starts_with(b"glTF") && !bytes.get(8..12).is_some_and(|l| l.iter().rev().ge(&[0, 0, 0, 12])) {
         return Err("its header is broken. Export it again".into());
     }
-    let file = gltf::Gltf::from_slice(bytes).map_err(|e| format!("this is no glTF 2.0: {e}. Export it again"))?;
+    let file = quietly(|| gltf::Gltf::from_slice(bytes)).ok_or("its indices lead nowhere. Export it again")?;
+    let file = file.map_err(|e| format!("this is no glTF 2.0: {e}. Export it again"))?;
     let mut blob = file.blob.clone();
     let buffers = file.buffers().map(|b| buffer(&b, &mut blob, folder)).collect::<Result<Vec<_>, _>>()?;
     let mut notes = Vec::new();

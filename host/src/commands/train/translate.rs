@@ -4,13 +4,14 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 use kinesic_host::clip::Clip;
+use kinesic_host::measure::Degrees;
 use kinesic_host::measure::turns::Turns;
 use kinesic_host::pack::{Metric, PackFile};
 use kinesic_host::prepare::{Source, common_rate};
 use kinesic_host::step_cache::StepCache;
 use kinesic_host::translate::{
-    AFFINE, Alignment, Base, Candidate, FormChoice, NamedPair, Poles, Report, Stage, TrainOptions, TrainPair, Trained,
-    evaluate, plausible, train_kept,
+    AFFINE, Alignment, Base, Candidate, Errors, FormChoice, NamedPair, Poles, Report, Stage, TrainOptions, TrainPair,
+    Trained, evaluate, plausible, train_kept,
 };
 use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
@@ -63,6 +64,9 @@ pub struct Args {
     /// Seed of random choices; recorded in the pack (this trainer makes none)
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// Write the pack even if it learned nothing, or is worse than doing nothing
+    #[arg(long)]
+    force: bool,
     /// Print the results as one JSON object
     #[arg(long)]
     json: bool,
@@ -86,13 +90,13 @@ enum Form {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Align {
-    /// The way with the smallest error on the training pairs
+    /// In step for walks, else the way with the smallest error on the training pairs
     Auto,
     /// Iterative motion warping of the positions, first frame to first, last to last
     Warp,
     /// Evenly from beginning to end
     Uniform,
-    /// By the phase of the limbs, in step; clips that start on different feet overlap in part. Best for masks and live use
+    /// By the phase of the limbs, in step; clips that start on different feet overlap in part
     InStep,
     /// By the phase of the limbs, left answering right: for clips that start on different feet
     Opposite,
@@ -120,6 +124,33 @@ fn check_rate<'a>(fps: f64, clips: impl Iterator<Item = &'a Clip>) -> miette::Re
         help = "leave --fps out to take the rate of the slowest clip",
         "--fps {fps}: expected at most {fastest:.0}, the rate of the fastest clip (at least 60): frames in between hold nothing new, and fitting \
          them takes hours"
+    ))
+}
+
+/// Distances between clips under which nothing is to be learned, cm and degrees.
+const NOTHING: [f64; 2] = [0.01, 0.05];
+
+/// Refuses a pack that cannot be of use.
+fn check_learned(judged: &Errors, force: bool) -> miette::Result<()> {
+    let [before, after] = [&judged.degrees.identity, &judged.degrees.error].map(|degrees| degrees.all);
+    let why = if judged.identity_cm < NOTHING[0] && before < NOTHING[1] {
+        "the clips of the pairs are the same motion: there is nothing to learn".to_owned()
+    } else if judged.error_cm >= judged.identity_cm && after >= before {
+        format!(
+            "the pack comes no nearer to its own training clips than doing nothing: {:.2} against {:.2} cm, {after:.2} against {before:.2} degrees",
+            judged.error_cm, judged.identity_cm
+        )
+    } else {
+        return Ok(());
+    };
+    if force {
+        println!("note: {why}");
+        return Ok(());
+    }
+    Err(miette!(
+        help =
+            "check that the clips of a pair show the same content in two manners; --force writes the pack all the same",
+        "{why}"
     ))
 }
 
@@ -183,7 +214,9 @@ pub fn run(args: &Args) -> miette::Result<()> {
         plausible(&preview.pack().into_diagnostic()?, &rig, &neutral, &styled).into_diagnostic()?;
     let pack = preview.pack().into_diagnostic()?;
     let report = evaluate(&pack, &rig, &trained.baselines, Some(&turns), &named).into_diagnostic()?;
-    provenance.metrics = metrics(&trained, &report);
+    let judged = report.errors.judged(trained.alignment);
+    check_learned(&judged, args.force)?;
+    provenance.metrics = metrics(&trained, &judged);
     let bytes = args.precision.of(trained.model.pack(&rig, &provenance), &provenance)?;
     let bytes = session.of_robot(bytes, &options, &provenance)?;
     let file = session.write(&bytes)?;
@@ -270,15 +303,15 @@ fn notes(trained: &Trained) -> Vec<String> {
     notes
 }
 
-fn metrics(trained: &Trained, report: &Report) -> Vec<Metric> {
+fn metrics(trained: &Trained, judged: &Errors) -> Vec<Metric> {
     vec![
         Metric::new("validation_cm", trained.candidate.1),
-        Metric::new("training_error_cm", report.errors.error_cm),
-        Metric::new("training_identity_cm", report.errors.identity_cm),
-        Metric::new("training_offset_cm", report.errors.offset_cm),
-        Metric::new("training_affine_cm", report.errors.affine_cm),
-        Metric::new("training_error_degrees", report.errors.degrees.error.all),
-        Metric::new("training_identity_degrees", report.errors.degrees.identity.all),
+        Metric::new("training_error_cm", judged.error_cm),
+        Metric::new("training_identity_cm", judged.identity_cm),
+        Metric::new("training_offset_cm", judged.offset_cm),
+        Metric::new("training_affine_cm", judged.affine_cm),
+        Metric::new("training_error_degrees", judged.degrees.error.all),
+        Metric::new("training_identity_degrees", judged.degrees.identity.all),
     ]
 }
 
@@ -326,12 +359,14 @@ fn print(summary: &Summary, trained: &Trained) {
         let mark = if *candidate == trained.candidate.0 { "*" } else { " " };
         println!("             {mark} {error:8.2}  {}", describe(candidate));
     }
-    let errors = &summary.training.errors;
-    println!("training pairs: aligned RMS joint distance, cm; mean angle, degrees: all joints, leaves");
+    let errors = &summary.training.errors.judged(trained.alignment);
+    let ends = if trained.alignment == Alignment::InStep { " (open ends)" } else { "" };
+    println!("training pairs: aligned RMS joint distance, cm; mean angle, degrees: all joints, leaves{ends}");
     let cm = [errors.identity_cm, errors.offset_cm, errors.affine_cm, errors.error_cm];
     for (cm, (name, degrees)) in cm.into_iter().zip(angles::columns(errors)) {
-        let [all, leaves] = degrees.map_or([f64::NAN; 2], |degrees| [degrees.all, degrees.leaves]);
-        println!("               {name:<8} {cm:8.2} {all:8.2} {leaves:8.2}");
+        let angle =
+            |of: fn(&Degrees) -> f64| degrees.map_or_else(|| "-".to_owned(), |degrees| format!("{:.2}", of(degrees)));
+        println!("               {name:<8} {cm:8.2} {:>8} {:>8}", angle(|d| d.all), angle(|d| d.leaves));
     }
     for note in notes(trained).iter().skip(4) {
         println!("note: {note}");

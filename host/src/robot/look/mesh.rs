@@ -1,14 +1,12 @@
 //! Meshes of descriptions: STL, OBJ and COLLADA files.
 
-use std::cell::Cell;
-use std::panic::{self, AssertUnwindSafe};
 use std::path::{Path, PathBuf};
-use std::sync::Once;
 
 use nalgebra::Vector3;
 
 use super::Solid;
 use crate::files;
+use crate::quietly::quietly;
 
 /// Triangles of one file at most.
 const MOST: usize = 4_000_000;
@@ -51,28 +49,6 @@ pub(super) fn read(name: &str, scale: &Vector3<f64>, folder: &Path) -> Result<Ve
         return Err(format!("{shown} has no triangle of any size"));
     }
     Ok(solids)
-}
-
-thread_local! {
-    static QUIET: Cell<bool> = const { Cell::new(false) };
-}
-
-/// What the reader gives; none where it panics, as it does on COLLADA files whose indices lead nowhere. Nothing is printed then.
-fn quietly<T>(read: impl FnOnce() -> T) -> Option<T> {
-    static HOOK: Once = Once::new();
-    HOOK.call_once(|| {
-        let before = panic::take_hook();
-        panic::set_hook(Box::new(move |info| {
-            if !QUIET.get() {
-                before(info);
-            }
-        }));
-    });
-    QUIET.set(true);
-    // Nothing of what was under way is used afterwards.
-    let read = panic::catch_unwind(AssertUnwindSafe(read)).ok();
-    QUIET.set(false);
-    read
 }
 
 /// Where a file is: as the name says, or, of a package, in a folder of the package's name or any other around the description.

@@ -51,11 +51,13 @@ pub fn page(trained: &Trained, report: &Report, first: &NamedPair, rig: &Rig, fi
             .to_vec(),
         rows,
     });
-    page.table(&angles::table(&angles::columns(&report.errors), "Angle to the target, mean of the training pairs"));
+    let judged = report.errors.judged(trained.alignment);
+    page.table(&angles::table(&angles::columns(&judged), "Angle to the target, mean of the training pairs"));
     page.chart(&most_changed(&pack, rig, &clips)?);
     page.heading("How it was chosen").table(&Table {
         caption:
-            "Ways to bring the clips together, and the error on the training pairs of each, cm; the smallest was taken"
+            "Ways to bring the clips together, and the error on the training pairs of each, cm, closed ends. Walks are brought together in step; \
+             else the smallest is taken"
                 .into(),
         head: vec!["alignment".into(), "error".into()],
         rows: trained

@@ -1,0 +1,149 @@
+//! Where the result of `kinesic apply` lands: on the clip's own skeleton or on the pack's, and what its feet do there.
+
+use clap::ValueEnum;
+use kinesic::Pack;
+use kinesic_host::clip::{Clip, JointMap};
+use kinesic_host::feet::{self, IN_STEP, OUT_OF_STEP};
+use kinesic_host::own_body::{self, OwnBody};
+use kinesic_host::prepare::Source;
+use kinesic_host::quality::{self, Quality};
+use kinesic_host::rig::Rig;
+use kinesic_host::translate;
+use miette::miette;
+use serde::Serialize;
+
+use super::Played;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum On {
+    /// The clip's own skeleton and frame rate
+    Clip,
+    /// The pack's skeleton and frame rate
+    Pack,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Feet {
+    /// The root follows the feet that stand in the clip, and legs reach for where these stood
+    Lock,
+    /// As the engine makes them
+    Free,
+}
+
+/// Whose skeleton the result has, and what its feet do.
+pub struct Place {
+    on: On,
+    feet: Feet,
+}
+
+/// Quality of the clip and of the result. A robot has no feet, a stored motion no clip.
+#[derive(Default, Serialize)]
+pub struct Judged {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    source: Option<Quality>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    styled: Option<Quality>,
+    /// Correlation of each foot, left and right, with that of the clip; absent where it hardly swings.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    step: Option<[Option<f64>; 2]>,
+    /// Whether feet are held where they stand in the clip.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    feet: Option<&'static str>,
+}
+
+impl Place {
+    /// The clip's skeleton unless told otherwise; limits are of the pack's joints, and a robot's clip is of the pack's.
+    pub fn choose(on: Option<On>, feet: Option<Feet>, pack: &Pack, source: Option<&Source>) -> miette::Result<Self> {
+        let limited = pack.metadata().models.iter().any(|meta| meta.limits().is_some());
+        let own = source.is_some_and(|source| source.machine.is_none());
+        if on == Some(On::Clip) && (limited || !own) {
+            let why = match limited {
+                true => "the pack's limits are of its own joints",
+                false if source.is_some() => "a robot's motion is on the pack's skeleton already",
+                false => "a stored motion comes from no clip",
+            };
+            return Err(miette!(help = "leave --on out", "--on clip: {why}"));
+        }
+        let on = on.unwrap_or(if own && !limited { On::Clip } else { On::Pack });
+        Ok(Self { on, feet: feet.unwrap_or(if on == On::Clip { Feet::Lock } else { Feet::Free }) })
+    }
+
+    /// The result of playing `clip`, which is `source` on the rig.
+    pub fn land(&self, source: Option<&Source>, rig: &Rig, clip: &Clip, played: &Played) -> (Clip, Judged) {
+        match source.filter(|_| self.on == On::Clip) {
+            Some(source) => {
+                let carried = OwnBody::new(source, rig).carry(clip, &played.clip);
+                let (styled, judged) = self.hold(&source.clip, carried, &source.map);
+                let due = |due: &Vec<f64>| own_body::retime(&styled, due, clip.frame_time);
+                let styled = played.clock.as_ref().map_or_else(|| styled.clone(), due);
+                (styled, judged)
+            }
+            None => {
+                let (styled, judged) = self.hold(clip, played.clip.clone(), &rig.map);
+                let due = |due: &Vec<f64>| translate::retime(rig, &styled, due);
+                let styled = played.clock.as_ref().map_or_else(|| styled.clone(), due);
+                (styled, judged)
+            }
+        }
+    }
+
+    /// Holds the feet of a result, unless they do something else than those of the clip.
+    fn hold(&self, source: &Clip, styled: Clip, map: &JointMap) -> (Clip, Judged) {
+        let step = feet::kept_step((source, map), (&styled, map));
+        let out_of_step = step.iter().flatten().any(|kept| *kept < OUT_OF_STEP);
+        let (styled, feet) = match self.feet {
+            Feet::Free => (styled, "free"),
+            Feet::Lock if out_of_step => (styled, "free: out of step with the clip"),
+            Feet::Lock => (feet::lock(source, &styled, map), "locked"),
+        };
+        let [before, after] = [source, &styled].map(|clip| Some(quality::measure(clip, map)));
+        (styled, Judged { source: before, styled: after, step: Some(step), feet: Some(feet) })
+    }
+}
+
+/// Quality of a motion that comes from no clip of a body.
+pub fn alone(clip: &Clip, map: Option<&JointMap>) -> Judged {
+    Judged { styled: map.map(|map| quality::measure(clip, map)), ..Judged::default() }
+}
+
+impl Judged {
+    /// Feet in a few words, for a line about one of many clips.
+    pub fn line(&self) -> String {
+        let slides = self.source.as_ref().zip(self.styled.as_ref());
+        let slides = slides
+            .map(|(a, b)| format!("; feet slide {:.1} cm/s, the clip's {:.1}", b.foot_slide_cm_s, a.foot_slide_cm_s));
+        slides.into_iter().chain(self.feet.map(|feet| format!(", {feet}"))).collect()
+    }
+
+    /// Prints the table, and what is wrong with the feet.
+    pub fn print(&self) {
+        if self.styled.is_some() {
+            println!("            foot slide, cm/s   standing, %   steps a minute   jerk, m/s^3");
+        }
+        let rows = self.source.iter().map(|q| ("source", q)).chain(self.styled.iter().map(|q| ("styled", q)));
+        for (name, q) in rows {
+            println!(
+                "{name:<10} {:>17.1} {:>13.0} {:>16.0} {:>13.1}",
+                q.foot_slide_cm_s, q.standing_percent, q.steps_a_minute, q.jerk_m_s3
+            );
+        }
+        let side = |(name, kept): (&str, Option<f64>)| kept.map(|kept| format!("{name} {kept:.2}"));
+        let sides: Vec<String> =
+            ["left", "right"].into_iter().zip(self.step.unwrap_or_default()).filter_map(side).collect();
+        if !sides.is_empty() {
+            println!(
+                "in step    {} (correlation of each foot with the clip's; {IN_STEP} and more keeps step)",
+                sides.join(", ")
+            );
+        }
+        if let Some(feet) = self.feet {
+            println!("feet       {feet}");
+        }
+        if self.step.iter().flatten().flatten().any(|kept| *kept < OUT_OF_STEP) {
+            println!(
+                "note: a foot of the result does something else than that of the clip. The pack was not trained in step: \
+                 kinesic train translate --align in-step ..."
+            );
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! The result lands on the clip's own skeleton: at strength 0 it is the clip, at strength 1 its bones, joints and rate are the clip's.
+
+use std::path::{Path, PathBuf};
+
+use kinesic::engine::Controls;
+use kinesic_host::clip::{Clip, ReadOptions};
+use kinesic_host::feet;
+use kinesic_host::models;
+use kinesic_host::own_body::OwnBody;
+use kinesic_host::prepare::Source;
+use kinesic_host::rig::Rig;
+use kinesic_host::translate::{Settings, Timing, play};
+
+/// Clips of nine skeletons: walks, and what is none.
+const CLIPS: [&str; 20] = [
+    "xia/neutral_01_000.bvh",
+    "xia/angry_01_001.bvh",
+    "cmu31/07_01.bvh",
+    "cmu31/08_01.bvh",
+    "cmu31/10_01.bvh",
+    "cmu31/35_01.bvh",
+    "m21/content/box-1.bvh",
+    "m21/content/jumping-jack.bvh",
+    "m21/style/DEPRESSED.bvh",
+    "m21/style/OLD-1.bvh",
+    "bandai2/wave-both-hands_normal_001.bvh",
+    "bandai2/walk_normal_001.bvh",
+    "kindergator/adult/p565_Fly-like-a-bird.csv",
+    "kindergator/adult/p734_Jump.csv",
+    "bandai1/walk_normal_001.bvh",
+    "bandai1/bye_active_001.bvh",
+    "cmu24cc/06_08.bvh",
+    "cmu43daz/09_01.bvh",
+    "cmu43daz/14_07.bvh",
+    "aalto/k_limp_angry_k_limp_sad_025_075.bvh",
+];
+
+fn data() -> Option<PathBuf> {
+    let default = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
+    let folder = std::env::var_os("KINESIC_DATA").map_or(default, PathBuf::from);
+    if folder.join("pairs.tsv").is_file() {
+        return Some(folder);
+    }
+    assert!(std::env::var("CI").as_deref() != Ok("true"), "no data in {}: set KINESIC_DATA", folder.display());
+    eprintln!("skipped: the clips in {} are needed", folder.display());
+    None
+}
+
+fn performed(source: &Source, strength: f32) -> Clip {
+    let file = models::weary();
+    let pack = file.pack().unwrap();
+    let rig = Rig::from_pack(&pack).unwrap();
+    let before = source.on_rig(&rig, f64::from(pack.metadata().frame_rate)).unwrap();
+    let controls = Controls { strength, ..Controls::default() };
+    let after =
+        play(&pack, &rig, &before, &Settings { controls, timing: Timing::Keep, ..Settings::default() }).unwrap();
+    let carried = OwnBody::new(source, &rig).carry(&before, &after);
+    feet::lock(&source.clip, &carried, &source.map)
+}
+
+/// Distance of a joint of one clip from that of the other, at most, m.
+fn farthest_joint(a: &Clip, b: &Clip) -> f64 {
+    let (a, b) = (a.all_positions(), b.all_positions());
+    a.iter().zip(&b).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
+}
+
+#[test]
+fn at_strength_0_every_joint_is_where_it_was_and_at_1_bones_are_the_clip_s() {
+    let mut farthest = 0.0f64;
+    let Some(data) = data() else { return };
+    for path in CLIPS.iter().map(|clip| data.join(clip)) {
+        let source = Source::read(&path, &ReadOptions::default()).unwrap();
+        let same = performed(&source, 0.0);
+        assert_eq!(same.frames(), source.clip.frames(), "{}", path.display());
+        assert!(same.skeleton == source.clip.skeleton && same.frame_time == source.clip.frame_time);
+        let far = farthest_joint(&same, &source.clip);
+        assert!(far < 1e-4, "{}: {far} m", path.display());
+        farthest = farthest.max(far);
+        let styled = performed(&source, 1.0);
+        assert!(styled.skeleton == source.clip.skeleton && styled.frames() == source.clip.frames());
+        assert!(farthest_joint(&styled, &source.clip) > 0.05, "{}: the style did nothing", path.display());
+        assert!(styled.rotations.iter().all(|q| q.coords.iter().all(|x| x.is_finite())));
+    }
+    println!("farthest joint at strength 0: {:.4} mm", 1000.0 * farthest);
+}
