@@ -13,18 +13,11 @@ pub fn vectorised<W: Work>(work: W) -> W::Output {
     pulp::Arch::new().dispatch(work)
 }
 
-/// Which entry decides the sign of a vector: the first of those that are nearly as large as the largest. Left and right of a body often
-/// differ by rounding alone, so the largest itself may be another one on another machine.
-pub fn leader(magnitudes: impl Iterator<Item = f64> + Clone) -> Option<usize> {
-    let largest = magnitudes.clone().fold(0.0, f64::max);
-    magnitudes.into_iter().position(|x| x > 0.0 && x >= 0.618 * largest)
-}
-
-/// An eigenvector with the sign by which its [`leader`] is positive. Either sign is one; which one a library finds depends on the
+/// An eigenvector with the sign by which its largest entry is positive. Either sign is one; which one a library finds depends on the
 /// instructions of the machine.
 pub fn oriented(mut vector: Vec<f64>) -> Vec<f64> {
-    let first = leader(vector.iter().map(|x| x.abs())).and_then(|at| vector.get(at));
-    if first.is_some_and(|x| *x < 0.0) {
+    let largest = vector.iter().fold(0.0f64, |largest, x| if x.abs() > largest.abs() { *x } else { largest });
+    if largest < 0.0 {
         vector.iter_mut().for_each(|x| *x = -*x);
     }
     vector

@@ -6,7 +6,6 @@ use faer::Mat;
 
 use super::dataset::Sequence;
 use super::dynamics::Dynamics;
-use crate::vector::oriented;
 
 /// Blocks that a single training sequence is cut into for validation.
 const BLOCKS: usize = 4;
@@ -40,10 +39,12 @@ pub fn principal(covariance: &Mat<f64>, frames: usize) -> Mat<f64> {
     let first = values[n - 1].max(0.0);
     let kept = (0..n).filter(|i| values[n - 1 - i] > 1e-9 * first).count().min(32);
     let deviation = (first / frames.max(1) as f64).sqrt();
-    // The sign is free: fixed, so that the same data give the same pack.
-    let columns: Vec<Vec<f64>> =
-        (0..kept).map(|k| oriented((0..n).map(|c| vectors[(c, n - 1 - k)]).collect())).collect();
-    Mat::from_fn(n, kept, |c, k| columns[k][c] / deviation)
+    Mat::from_fn(n, kept, |c, k| {
+        // The sign is free: fix it so that the same data give the same pack.
+        let column = vectors.col(n - 1 - k);
+        let largest = (0..n).max_by(|a, b| column[*a].abs().total_cmp(&column[*b].abs())).unwrap_or(0);
+        column[c] * column[largest].signum() / deviation
+    })
 }
 
 /// Whole groups where there are at least three, else whole sequences, else blocks of time.

@@ -5,7 +5,6 @@ use faer::linalg::solvers::Solve;
 
 use super::StateSpace;
 use crate::translate::dynamics::Dynamics;
-use crate::vector::{leader, oriented};
 
 /// A model in real modal form.
 #[derive(Clone, Debug)]
@@ -49,17 +48,13 @@ pub fn modal(model: &StateSpace) -> Modal {
         let k = inside(values[i].re.hypot(values[i].im));
         let (re, im) = (k * values[i].re, k * values[i].im);
         blocks.push([re, im, -im, re]);
-        // Any phase of an eigenvector is one: its leading entry is real and positive.
-        let turn = leader((0..n).map(|r| vectors[(r, i)].norm())).map_or(vectors[(0, i)], |r| vectors[(r, i)]);
-        let size = turn.norm();
-        let (cos, sin) = if size > 0.0 { (turn.re / size, turn.im / size) } else { (1.0, 0.0) };
-        columns.push((0..n).map(|r| vectors[(r, i)].re * cos + vectors[(r, i)].im * sin).collect());
-        columns.push((0..n).map(|r| vectors[(r, i)].im * cos - vectors[(r, i)].re * sin).collect());
+        columns.push((0..n).map(|r| vectors[(r, i)].re).collect());
+        columns.push((0..n).map(|r| vectors[(r, i)].im).collect());
     }
     for pair in real.chunks(2) {
         let pole = |i: Option<&usize>| i.map_or(0.0, |i| values[*i].re * inside(values[*i].re.abs()));
         blocks.push([pole(pair.first()), 0.0, 0.0, pole(pair.get(1))]);
-        columns.extend(pair.iter().map(|i| oriented((0..n).map(|r| vectors[(r, *i)].re).collect())));
+        columns.extend(pair.iter().map(|i| (0..n).map(|r| vectors[(r, *i)].re).collect::<Vec<_>>()));
     }
     let basis = Mat::from_fn(n, n, |r, c| columns.get(c).map_or(0.0, |column| column[r]));
     let input = basis.partial_piv_lu().solve(&model.b);
