@@ -75,25 +75,6 @@ impl<'a> OwnBody<'a> {
     }
 }
 
-/// A clip on its own skeleton by a learned clock: `due` says when each frame of the rig is due, in frames, rising. The rate stays.
-pub fn retime(clip: &Clip, due: &[f64], rig_frame_time: f64) -> Clip {
-    let Some(end) = due.last().filter(|_| due.len() > 1 && clip.frames() > 1) else { return clip.clone() };
-    let ratio = rig_frame_time / clip.frame_time;
-    let frames = 1 + (end * ratio).floor() as usize;
-    let mut next = 1;
-    let times: Vec<f64> = (0..frames)
-        .map(|frame| {
-            let now = frame as f64 / ratio;
-            while next + 1 < due.len() && due[next] < now {
-                next += 1;
-            }
-            let part = ((now - due[next - 1]) / (due[next] - due[next - 1])).clamp(0.0, 1.0);
-            (next as f64 - 1.0 + part) * ratio
-        })
-        .collect();
-    clip.sampled(times.into_iter(), clip.frame_time)
-}
-
 /// What changed in a frame: a turn in the world per pair of joints, and the way of the root, m of the clip's body.
 #[derive(Clone)]
 struct Change {

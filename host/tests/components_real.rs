@@ -1,8 +1,7 @@
 //! Real clips (`KINESIC_DATA`): what the documentation claims, on a part of the clips.
 
-mod components_common;
+mod real;
 
-use components_common::data;
 use kinesic_host::clip::ReadOptions;
 use kinesic_host::components::{FRAME_RATE, Motion, Sparsity, TrainOptions, choose, pca, prune, refit, sparse, train};
 use kinesic_host::prepare::Source;
@@ -15,7 +14,7 @@ const PAIRS: [[&str; 2]; 3] = [
 
 #[test]
 fn sparse_components_at_equal_density() {
-    let Some(folder) = data() else { return };
+    let Some(folder) = real::data("components_real") else { return };
     for [name, _] in PAIRS {
         let source = Source::read(&folder.join(name), &ReadOptions::default()).expect("reads");
         let rig = source.rig().expect("a rig");
@@ -38,7 +37,7 @@ fn sparse_components_at_equal_density() {
 
 #[test]
 fn real_pairs_come_nearer_to_the_style_heads_and_hands_too() {
-    let Some(folder) = data() else { return };
+    let Some(folder) = real::data("components_real") else { return };
     for names in PAIRS {
         let [content, style] =
             names.map(|name| Source::read(&folder.join(name), &ReadOptions::default()).expect("reads"));

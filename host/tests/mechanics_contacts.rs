@@ -1,12 +1,13 @@
 //! Foot contacts of the device's code beside an independent, non-causal reference in f64, flat, tilted and stepped.
 
 mod mechanics_common;
+mod real;
 
 use kinesic::mechanics::{DynamicFeatures, FeatureState};
 use kinesic_host::clip::{Canonical, Clip};
 use kinesic_host::mechanics::{body, measured};
 use kinesic_host::rig::{MAX_JOINTS, Rig};
-use mechanics_common::{data, on_rig};
+use mechanics_common::on_rig;
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// Walking, running, jumping, dancing, hopping, standing.
@@ -116,7 +117,7 @@ fn stepped(clip: &Clip) -> Clip {
 
 #[test]
 fn precision_and_recall_on_real_clips() {
-    let Some(folder) = data("mechanics_contacts") else { return };
+    let Some(folder) = real::data("mechanics_contacts") else { return };
     let (rig, clips) = on_rig(&folder, &CLIPS);
     let calibrated: Vec<&Clip> = clips.iter().take(4).collect();
     println!("{:34} {:>22} {:>22} {:>22}", "precision, recall, flicker", "flat", "tilted 5 deg", "stepped 0.2 m");
@@ -141,7 +142,7 @@ fn precision_and_recall_on_real_clips() {
 
 #[test]
 fn standing_still_gives_two_steady_contacts() {
-    let Some(folder) = data("mechanics_contacts") else { return };
+    let Some(folder) = real::data("mechanics_contacts") else { return };
     // Three seconds of one pose of a walk's double support, with a millimetre of noise as from a camera.
     let (rig, clips) = on_rig(&folder, &["cmu31/35_05.bvh"]);
     let clip = &clips[0];

@@ -1,6 +1,7 @@
 //! Laws of decoupling and modulation on made poses, and features against an independent computation of the whole clip.
 
 mod mechanics_common;
+mod real;
 
 use kinesic::Pose;
 use kinesic::mechanics::{
@@ -10,7 +11,7 @@ use kinesic::mechanics::{
 use kinesic_host::clip::{Canonical, Clip};
 use kinesic_host::mechanics::{Rows, body, measured, signs};
 use kinesic_host::rig::{MAX_JOINTS, Rig};
-use mechanics_common::{data, on_rig};
+use mechanics_common::on_rig;
 use nalgebra::{UnitQuaternion, Vector3};
 use proptest::prelude::*;
 
@@ -136,7 +137,7 @@ fn whole_clip(rig: &Rig, body: &Body, clip: &Clip, frame: usize, heading: &mut f
 
 #[test]
 fn streaming_equals_the_whole_clip() {
-    let Some(folder) = data("mechanics_laws") else { return };
+    let Some(folder) = real::data("mechanics_laws") else { return };
     let (rig, clips) = on_rig(&folder, &CLIPS);
     let body = measured(&body(&rig).unwrap(), &clips.iter().collect::<Vec<_>>());
     let signs = signs(&rig, &clips.iter().collect::<Vec<_>>());
@@ -168,7 +169,7 @@ fn streaming_equals_the_whole_clip() {
 /// On level ground the running ground estimate is the floor, found here from the whole clip at once.
 #[test]
 fn hip_height_is_that_over_the_floor() {
-    let Some(folder) = data("hip_height_is_that_over_the_floor") else { return };
+    let Some(folder) = real::data("hip_height_is_that_over_the_floor") else { return };
     let (rig, clips) = on_rig(&folder, &CLIPS[..1]);
     let clip = &clips[0];
     let body = measured(&body(&rig).unwrap(), &[clip]);
@@ -197,7 +198,7 @@ fn hip_height_is_that_over_the_floor() {
 
 #[test]
 fn dropped_and_broken_frames_leave_no_trace() {
-    let Some(folder) = data("mechanics_laws") else { return };
+    let Some(folder) = real::data("mechanics_laws") else { return };
     let (rig, clips) = on_rig(&folder, &CLIPS[..1]);
     let body = body(&rig).unwrap();
     let features = DynamicFeatures::new(rig.device(), &body, 60.0).unwrap();

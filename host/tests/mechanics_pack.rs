@@ -1,6 +1,7 @@
 //! The pack that ships (`models/mechanics.kin`) on real clips, and packs with shapes that do not fit.
 
 mod mechanics_common;
+mod real;
 
 use std::path::Path;
 
@@ -12,7 +13,7 @@ use kinesic_host::mechanics::{HostMechanics, NamedClip, TrainOptions, decouple, 
 use kinesic_host::pack::{PackFile, PackWriter, Provenance};
 use kinesic_host::prepare::{Source, fingerprint};
 use kinesic_host::rig::{MAX_JOINTS, Rig};
-use mechanics_common::{data, on_rig};
+use mechanics_common::on_rig;
 
 fn shipped() -> PackFile {
     PackFile::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../models/mechanics.kin")).expect("the shipped pack")
@@ -32,7 +33,7 @@ fn read(folder: &Path, rig: &Rig, name: &str) -> Clip {
 
 #[test]
 fn every_frame_of_every_expressive_clip_is_the_product_of_its_parts() {
-    let Some(folder) = data("mechanics_pack") else { return };
+    let Some(folder) = real::data("mechanics_pack") else { return };
     let file = shipped();
     let pack = file.pack().unwrap();
     let rig = Rig::from_pack(&pack).unwrap();
@@ -59,7 +60,7 @@ fn every_frame_of_every_expressive_clip_is_the_product_of_its_parts() {
 
 #[test]
 fn unseen_plain_clips_keep_little_and_are_predicted_better_than_by_regression() {
-    let Some(folder) = data("mechanics_pack") else { return };
+    let Some(folder) = real::data("mechanics_pack") else { return };
     let file = shipped();
     let pack = file.pack().unwrap();
     let rig = Rig::from_pack(&pack).unwrap();
@@ -92,7 +93,7 @@ fn unseen_plain_clips_keep_little_and_are_predicted_better_than_by_regression() 
 
 #[test]
 fn training_repeats_itself_and_its_pack_predicts_what_the_trainer_measured() {
-    let Some(folder) = data("mechanics_pack") else { return };
+    let Some(folder) = real::data("mechanics_pack") else { return };
     // The walks are one person's: another rest pose is a joint that moves, to the trainer alone.
     let names = ["cmu31/07_01.bvh", "cmu31/07_02.bvh", "cmu31/07_03.bvh", "cmu31/07_04.bvh", "cmu31/05_02.bvh"];
     let (rig, clips) = on_rig(&folder, &names);

@@ -1,15 +1,15 @@
 //! The automatic proposal of non-expressive clips beside the labels of `manifest.tsv`, which it does not read.
 
 mod mechanics_common;
+mod real;
 
 use kinesic_host::clip::ReadOptions;
 use kinesic_host::mechanics::propose;
 use kinesic_host::prepare::Source;
-use mechanics_common::data;
 
 #[test]
 fn proposes_most_plain_clips_and_hardly_an_expressive_one() {
-    let Some(folder) = data("mechanics_propose") else { return };
+    let Some(folder) = real::data("mechanics_propose") else { return };
     let manifest = std::fs::read_to_string(folder.join("manifest.tsv")).expect("manifest.tsv");
     let (mut right, mut wrong, mut missed, mut refused) = (0, 0, Vec::new(), 0);
     for row in manifest.lines().map(|line| line.split('\t').collect::<Vec<_>>()) {

@@ -1,6 +1,6 @@
 //! The result lands on the clip's own skeleton: at strength 0 it is the clip, at strength 1 its bones, joints and rate are the clip's.
 
-use std::path::{Path, PathBuf};
+mod real;
 
 use kinesic::engine::Controls;
 use kinesic_host::clip::{Clip, ReadOptions};
@@ -35,17 +35,6 @@ const CLIPS: [&str; 20] = [
     "aalto/k_limp_angry_k_limp_sad_025_075.bvh",
 ];
 
-fn data() -> Option<PathBuf> {
-    let default = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
-    let folder = std::env::var_os("KINESIC_DATA").map_or(default, PathBuf::from);
-    if folder.join("pairs.tsv").is_file() {
-        return Some(folder);
-    }
-    assert!(std::env::var("CI").as_deref() != Ok("true"), "no data in {}: set KINESIC_DATA", folder.display());
-    eprintln!("skipped: the clips in {} are needed", folder.display());
-    None
-}
-
 fn performed(source: &Source, strength: f32) -> Clip {
     let file = models::weary();
     let pack = file.pack().unwrap();
@@ -67,7 +56,7 @@ fn farthest_joint(a: &Clip, b: &Clip) -> f64 {
 #[test]
 fn at_strength_0_every_joint_is_where_it_was_and_at_1_bones_are_the_clip_s() {
     let mut farthest = 0.0f64;
-    let Some(data) = data() else { return };
+    let Some(data) = real::data("own_body") else { return };
     for path in CLIPS.iter().map(|clip| data.join(clip)) {
         let source = Source::read(&path, &ReadOptions::default()).unwrap();
         let same = performed(&source, 0.0);

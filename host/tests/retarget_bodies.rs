@@ -2,8 +2,9 @@
 //! their width. `--nocapture` prints the table; `KINESIC_BVH=FOLDER` writes what was made.
 
 mod bodies;
+mod real;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use bodies::{Measured, hinge, measure, share};
 use kinesic_host::clip::{Canonical, ReadOptions};
@@ -27,20 +28,10 @@ const BODIES: [(&str, &[&str]); 10] = [
 ];
 /// The first of them have CMU's hips: the spine turns in the pelvis.
 const CMU: usize = 3;
-fn data() -> Option<PathBuf> {
-    let default = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
-    let folder = std::env::var_os("KINESIC_DATA").map_or(default, PathBuf::from);
-    if folder.join("pairs.tsv").is_file() {
-        return Some(folder);
-    }
-    assert!(std::env::var("CI").as_deref() != Ok("true"), "no data in {}: set KINESIC_DATA", folder.display());
-    eprintln!("skipped: the clips in {} are needed", folder.display());
-    None
-}
 
 #[test]
 fn every_body_on_every_other() {
-    let Some(folder) = data() else { return };
+    let Some(folder) = real::data("retarget_bodies") else { return };
     let sources: Vec<Vec<Source>> = BODIES
         .iter()
         .map(|(_, clips)| {
@@ -105,7 +96,7 @@ fn every_body_on_every_other() {
 /// nothing of that, the recordings do. (Elbows turn about the forearm as well, so that they have no axis to compare.)
 #[test]
 fn knees_bend_about_the_axes_of_the_rig() {
-    let Some(folder) = data() else { return };
+    let Some(folder) = real::data("retarget_bodies") else { return };
     let read = |name: &str| Source::read(&folder.join(name), &ReadOptions::default()).unwrap();
     let limbs = [Canonical::LKnee, Canonical::RKnee];
     let axes = |source: &Source| limbs.map(|j| hinge(&source.clip, source.map.joint(j).unwrap()));

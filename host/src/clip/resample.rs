@@ -105,6 +105,25 @@ impl Clip {
         out
     }
 
+    /// The clip on another clock, at its own rate: `due` says when each frame of a clip of the same motion at `frame_time` is due, in frames,
+    /// rising. That clip may have another rate.
+    pub fn on_clock(&self, due: &[f64], frame_time: f64) -> Clip {
+        let Some(end) = due.last().filter(|_| due.len() > 1 && self.frames() > 1) else { return self.clone() };
+        let ratio = frame_time / self.frame_time;
+        let frames = 1 + (end * ratio).floor() as usize;
+        let mut next = 1;
+        let time = |frame: usize| {
+            let now = frame as f64 / ratio;
+            while next + 1 < due.len() && due[next] < now {
+                next += 1;
+            }
+            let part = ((now - due[next - 1]) / (due[next] - due[next - 1])).clamp(0.0, 1.0);
+            (next as f64 - 1.0 + part) * ratio
+        };
+        let times: Vec<f64> = (0..frames).map(time).collect();
+        self.sampled(times.into_iter(), self.frame_time)
+    }
+
     /// Every `step`-th frame.
     fn every(&self, step: usize, frame_time: f64) -> Clip {
         let root = self.root.iter().step_by(step).copied().collect();

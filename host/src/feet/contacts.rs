@@ -123,17 +123,7 @@ mod tests {
         assert!(none * 10 < clip.frames(), "{none} of {} frames in the air", clip.frames());
         assert!(both * 2 < clip.frames(), "{both} of {} frames on both feet", clip.frames());
         // .9 strides a second for 4 s.
-        assert!(stands.iter().all(|foot| (3..=5).contains(&runs(foot).len())), "{:?}", stands.each_ref_len());
-    }
-
-    trait Lens {
-        fn each_ref_len(&self) -> Vec<usize>;
-    }
-
-    impl Lens for Vec<Vec<bool>> {
-        fn each_ref_len(&self) -> Vec<usize> {
-            self.iter().map(|foot| runs(foot).len()).collect()
-        }
+        assert!(stands.iter().all(|foot| (3..=5).contains(&runs(foot).len())), "{stands:?}");
     }
 
     #[test]

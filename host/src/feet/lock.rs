@@ -82,10 +82,9 @@ fn travel(from: &[Vec<Vector3<f64>>], to: &[Vec<Vector3<f64>>], stands: &[Vec<bo
             }
         }
     }
-    let known: Vec<bool> = weights.iter().map(|weight| *weight > 0.0).collect();
     steps.iter_mut().zip(&weights).filter(|(_, weight)| **weight > 0.0).for_each(|(step, weight)| *step /= *weight);
-    let unknown: Vec<bool> = known.iter().map(|known| !known).collect();
-    for gap in runs(&unknown).into_iter().filter(|gap| (gap.len() as f64) < FLIGHT * fps) {
+    let in_flight: Vec<bool> = weights.iter().map(|weight| *weight == 0.0).collect();
+    for gap in runs(&in_flight).into_iter().filter(|gap| (gap.len() as f64) < FLIGHT * fps) {
         let [before, after] = [gap.start.checked_sub(1), Some(gap.end).filter(|end| *end < frames)];
         let ends = [before.or(after), after.or(before)].map(|end| end.map_or_else(Vector3::zeros, |end| steps[end]));
         for frame in gap.clone() {

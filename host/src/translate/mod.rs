@@ -35,7 +35,7 @@ pub use dynamics::{Dynamics, Poles};
 pub use evaluate::{Angles, Errors, EvaluateError, NamedPair, PairReport, Report, evaluate};
 pub use model::{BankModel, TimingModel, TranslatorModel};
 pub use moments::Base;
-pub use play::{HostTranslator, Settings, TIMING_STRENGTH, Timing, play, play_on_clock, retime};
+pub use play::{HostTranslator, Settings, TIMING_STRENGTH, Timing, play, play_on_clock};
 pub use strength::plausible;
 pub use train::{
     DEFAULT_ORDER, FormChoice, Stage, TrainError, TrainOptions, TrainPair, Trained, partners, train, train_kept,

@@ -2,11 +2,10 @@
 
 use kinesic::engine::Controls;
 use kinesic::model::LoadError;
-use kinesic::{Pack, Pose, Translator, TranslatorState};
-use nalgebra::UnitQuaternion;
+use kinesic::{Pack, Translator, TranslatorState};
 
 use crate::clip::Clip;
-use crate::rig::{MAX_JOINTS, MAX_ROWS, Rig};
+use crate::rig::{MAX_ROWS, Rig};
 use crate::strength::{Curve, Knobs};
 
 /// Filter states that the host steps.
@@ -44,7 +43,7 @@ pub fn play(pack: &Pack, rig: &Rig, source: &Clip, settings: &Settings) -> Resul
     let (styled, clock) = play_on_clock(pack, rig, source, settings)?;
     Ok(match settings.timing {
         Timing::Keep => styled,
-        Timing::Learned => retime(rig, &styled, &clock),
+        Timing::Learned => styled.on_clock(&clock, styled.frame_time),
     })
 }
 
@@ -73,40 +72,4 @@ pub fn play_on_clock(
         now += f64::from(timing.duration).powf(f64::from(strength));
     });
     Ok((styled, clock))
-}
-
-/// The motion at whole frames of `clock`, which says when each frame is due, in frames, rising.
-pub fn retime(rig: &Rig, clip: &Clip, clock: &[f64]) -> Clip {
-    let Some(end) = clock.last().filter(|_| clip.frames() > 1) else { return clip.clone() };
-    let mut next = 1;
-    let due = (0..=end.floor() as usize).map(|frame| {
-        let due = frame as f64;
-        while next + 1 < clock.len() && clock[next] < due {
-            next += 1;
-        }
-        (next, ((due - clock[next - 1]) / (clock[next] - clock[next - 1])).clamp(0.0, 1.0) as f32)
-    });
-    if clip.coordinates.is_none() {
-        let poses = rig.poses(clip);
-        let made: Vec<_> = due.map(|(next, weight)| between(&poses[next - 1], &poses[next], weight)).collect();
-        return rig.clip(&made, clip.frame_time);
-    }
-    let frames = rig.frames_of(clip);
-    let made = due.map(|(next, weight)| {
-        let mut frame = frames[next - 1];
-        let ends = frame.coordinates_mut().iter_mut().zip(frames[next].coordinates());
-        ends.for_each(|(x, to)| *x += weight * (to - *x));
-        frame
-    });
-    rig.clip_of(&made.collect::<Vec<_>>(), clip.frame_time)
-}
-
-/// Linear interpolation of two poses.
-pub(crate) fn between(a: &Pose<MAX_JOINTS>, b: &Pose<MAX_JOINTS>, weight: f32) -> Pose<MAX_JOINTS> {
-    let mut pose = Pose::identity();
-    pose.root = a.root.lerp(&b.root, weight);
-    for (out, (a, b)) in pose.rotations.iter_mut().zip(a.rotations.iter().zip(&b.rotations)) {
-        *out = UnitQuaternion::new_normalize(kinesic::pose::nlerp(a, b, weight).into_inner());
-    }
-    pose
 }

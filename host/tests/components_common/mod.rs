@@ -1,8 +1,6 @@
 //! A made figure that walks in two manners.
 #![allow(dead_code)]
 
-use std::path::{Path, PathBuf};
-
 use kinesic_host::clip::{Canonical, Clip, Joint, JointMap, Skeleton};
 use kinesic_host::components::FRAME_RATE;
 use kinesic_host::rig::Rig;
@@ -74,16 +72,4 @@ pub fn walk(rig: &Rig, frames: usize, energy: f64, stoop: f64) -> Clip {
         clip.rotations.extend(pose);
     }
     clip
-}
-
-/// The data, or a note that the test was skipped; with `CI=true` its absence is a failure.
-pub fn data() -> Option<PathBuf> {
-    let default = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
-    let folder = std::env::var_os("KINESIC_DATA").map_or(default, PathBuf::from);
-    if folder.join("pairs.tsv").is_file() {
-        return Some(folder);
-    }
-    assert!(std::env::var("CI").as_deref() != Ok("true"), "no data in {}: set KINESIC_DATA", folder.display());
-    eprintln!("skipped: the clips in {} are needed", folder.display());
-    None
 }

@@ -4,11 +4,10 @@ use clap::ValueEnum;
 use kinesic::Pack;
 use kinesic_host::clip::{Clip, JointMap};
 use kinesic_host::feet::{self, IN_STEP, OUT_OF_STEP};
-use kinesic_host::own_body::{self, OwnBody};
+use kinesic_host::own_body::OwnBody;
 use kinesic_host::prepare::Source;
 use kinesic_host::quality::{self, Quality};
 use kinesic_host::rig::Rig;
-use kinesic_host::translate;
 use miette::miette;
 use serde::Serialize;
 
@@ -36,8 +35,8 @@ pub struct Place {
     feet: Feet,
 }
 
-/// Quality of the clip and of the result. A robot has no feet, a stored motion no clip.
-#[derive(Default, Serialize)]
+/// Quality of the clip and of the result.
+#[derive(Serialize)]
 pub struct Judged {
     #[serde(skip_serializing_if = "Option::is_none")]
     source: Option<Quality>,
@@ -68,42 +67,65 @@ impl Place {
         Ok(Self { on, feet: feet.unwrap_or(if on == On::Clip { Feet::Lock } else { Feet::Free }) })
     }
 
-    /// The result of playing `clip`, which is `source` on the rig.
-    pub fn land(&self, source: Option<&Source>, rig: &Rig, clip: &Clip, played: &Played) -> (Clip, Judged) {
-        match source.filter(|_| self.on == On::Clip) {
-            Some(source) => {
-                let carried = OwnBody::new(source, rig).carry(clip, &played.clip);
-                let (styled, judged) = self.hold(&source.clip, carried, &source.map);
-                let due = |due: &Vec<f64>| own_body::retime(&styled, due, clip.frame_time);
-                let styled = played.clock.as_ref().map_or_else(|| styled.clone(), due);
-                (styled, judged)
-            }
-            None => {
-                let (styled, judged) = self.hold(clip, played.clip.clone(), &rig.map);
-                let due = |due: &Vec<f64>| translate::retime(rig, &styled, due);
-                let styled = played.clock.as_ref().map_or_else(|| styled.clone(), due);
-                (styled, judged)
-            }
-        }
-    }
-
-    /// Holds the feet of a result, unless they do something else than those of the clip.
-    fn hold(&self, source: &Clip, styled: Clip, map: &JointMap) -> (Clip, Judged) {
-        let step = feet::kept_step((source, map), (&styled, map));
-        let out_of_step = step.iter().flatten().any(|kept| *kept < OUT_OF_STEP);
+    /// The result of playing `clip`, which is `source` on the rig. A robot has no feet, a stored motion no clip.
+    pub fn land<'a>(
+        &self,
+        source: Option<&'a Source>,
+        rig: &'a Rig,
+        clip: Option<&'a Clip>,
+        played: &Played,
+    ) -> Landed<'a> {
+        let stands = source.is_some_and(|source| source.machine.is_some());
+        let Some(clip) = clip.filter(|_| !stands) else {
+            let clip = played.on_clock(&played.clip, &played.clip);
+            return Landed {
+                clip,
+                from: None,
+                map: rig.frames().travels().then_some(&rig.map),
+                step: None,
+                feet: None,
+            };
+        };
+        let (from, styled, map) = match source.filter(|_| self.on == On::Clip) {
+            Some(source) => (&source.clip, OwnBody::new(source, rig).carry(clip, &played.clip), &source.map),
+            None => (clip, played.clip.clone(), &rig.map),
+        };
+        let step = feet::kept_step((from, map), (&styled, map));
         let (styled, feet) = match self.feet {
             Feet::Free => (styled, "free"),
-            Feet::Lock if out_of_step => (styled, "free: out of step with the clip"),
-            Feet::Lock => (feet::lock(source, &styled, map), "locked"),
+            Feet::Lock if out_of_step(&step) => (styled, "free: out of step with the clip"),
+            Feet::Lock => (feet::lock(from, &styled, map), "locked"),
         };
-        let [before, after] = [source, &styled].map(|clip| Some(quality::measure(clip, map)));
-        (styled, Judged { source: before, styled: after, step: Some(step), feet: Some(feet) })
+        Landed {
+            clip: played.on_clock(&styled, clip),
+            from: Some(from),
+            map: Some(map),
+            step: Some(step),
+            feet: Some(feet),
+        }
     }
 }
 
-/// Quality of a motion that comes from no clip of a body.
-pub fn alone(clip: &Clip, map: Option<&JointMap>) -> Judged {
-    Judged { styled: map.map(|map| quality::measure(clip, map)), ..Judged::default() }
+fn out_of_step(step: &[Option<f64>; 2]) -> bool {
+    step.iter().flatten().any(|kept| *kept < OUT_OF_STEP)
+}
+
+/// A result where it belongs.
+pub struct Landed<'a> {
+    /// The motion.
+    pub clip: Clip,
+    from: Option<&'a Clip>,
+    map: Option<&'a JointMap>,
+    step: Option<[Option<f64>; 2]>,
+    feet: Option<&'static str>,
+}
+
+impl Landed<'_> {
+    /// Quality of the clip and of what is written.
+    pub fn judge(&self, written: &Clip) -> Judged {
+        let quality = |clip: &Clip| self.map.map(|map| quality::measure(clip, map));
+        Judged { source: self.from.and_then(quality), styled: quality(written), step: self.step, feet: self.feet }
+    }
 }
 
 impl Judged {
@@ -139,10 +161,10 @@ impl Judged {
         if let Some(feet) = self.feet {
             println!("feet       {feet}");
         }
-        if self.step.iter().flatten().flatten().any(|kept| *kept < OUT_OF_STEP) {
+        if self.step.as_ref().is_some_and(out_of_step) {
             println!(
-                "note: a foot of the result does something else than that of the clip. The pack was not trained in step: \
-                 kinesic train translate --align in-step ..."
+                "note: a foot of the result does something else than that of the clip. Either the pack was not trained in step \
+                 (kinesic train translate --align in-step ...), or the clip is unlike what it was trained on"
             );
         }
     }

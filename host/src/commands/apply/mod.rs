@@ -2,6 +2,7 @@
 
 mod land;
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
@@ -179,14 +180,10 @@ impl Stage<'_> {
         let clip = source.as_ref().map(|source| source.on_rig(rig, fps)).transpose().into_diagnostic()?;
         let played = play(args, pack, rig, clip.as_ref(), &self.knobs)?;
         let place = Place::choose(args.on, args.feet, pack, source.as_ref())?;
-        let standing = self.machine.is_some();
-        let (styled, quality) = match &clip {
-            Some(clip) if !standing => place.land(source.as_ref(), rig, clip, &played),
-            _ => (played.timed(rig), land::alone(&played.clip, (!standing).then_some(&rig.map))),
-        };
-        let (styled, limits) = match limit::play(pack, rig, &styled).into_diagnostic()? {
-            Some((clip, clamps)) => (clip, Some(clamps)),
-            None => (styled, None),
+        let landed = place.land(source.as_ref(), rig, clip.as_ref(), &played);
+        let (styled, limits) = match limit::play(pack, rig, &landed.clip).into_diagnostic()? {
+            Some((clip, clamps)) => (Cow::Owned(clip), Some(clamps)),
+            None => (Cow::Borrowed(&landed.clip), None),
         };
         let moves = source.as_ref().and_then(|source| source.moves.as_ref());
         write_motion(out, &styled, self.machine.as_ref(), moves)?;
@@ -196,7 +193,7 @@ impl Stage<'_> {
             out: out.display().to_string(),
             frames: styled.frames(),
             frame_rate: 1.0 / styled.frame_time,
-            quality,
+            quality: landed.judge(&styled),
             limits,
             notes: self.notes(&played),
         })
@@ -247,8 +244,9 @@ struct Played {
 }
 
 impl Played {
-    fn timed(&self, rig: &Rig) -> Clip {
-        self.clock.as_ref().map_or_else(|| self.clip.clone(), |clock| translate::retime(rig, &self.clip, clock))
+    /// A motion on the pack's clock, if that decides. `on_rig` has the frames that the clock counts.
+    fn on_clock(&self, clip: &Clip, on_rig: &Clip) -> Clip {
+        self.clock.as_ref().map_or_else(|| clip.clone(), |due| clip.on_clock(due, on_rig.frame_time))
     }
 }
 
