@@ -144,7 +144,7 @@ fn check_learned(judged: &Errors, force: bool) -> miette::Result<()> {
         return Ok(());
     };
     if force {
-        println!("note: {why}");
+        eprintln!("note: {why}");
         return Ok(());
     }
     Err(miette!(
