@@ -16,7 +16,7 @@ use crate::limit::{HostLimiter, LimitsModel};
 use crate::mechanics::{HostMechanics, decouple, modulate};
 use crate::rig::{Rig, RigError};
 use crate::strength::Knobs;
-use crate::translate::{self, HostTranslator, Timing};
+use crate::translate::{self, HostTranslator};
 
 /// Plays a clip on the pack's rig and at its frame rate, as on a live stream.
 pub type Play = fn(&Pack, &Rig, &Clip, &Knobs) -> Result<Clip, LoadError>;
@@ -90,13 +90,15 @@ impl Known for TranslatorMeta<'_> {
 
     fn figures(&self, pack: &Pack, rows: usize) -> Result<Value, RigError> {
         let translator = HostTranslator::load(pack)?;
-        let states = (2 * self.blocks + self.drives) as usize;
+        let states = translator.states();
         Ok(json!({
             "style": self.style,
             "form": format!("{:?}", self.form),
             "numbers": format!("{:?}", translator.number()).to_lowercase(),
             "filter_states": 2 * self.blocks,
             "drives": self.drives,
+            "gated": translator.is_gated(),
+            "experts": translator.experts(),
             "multiply_adds_per_frame": translator.multiply_adds(),
             "capacity": format!("Translator::<{rows}, {states}>"),
             "state_bytes": translator_state_bytes(rows, states),
@@ -104,8 +106,8 @@ impl Known for TranslatorMeta<'_> {
         }))
     }
 
-    fn source(&self, _: &Pack) -> Result<Source, LoadError> {
-        let states = (2 * self.blocks + self.drives) as usize;
+    fn source(&self, pack: &Pack) -> Result<Source, LoadError> {
+        let states = HostTranslator::load(pack)?.states();
         Ok(Source {
             model: "Translator::<ROWS, STATES>",
             state: "TranslatorState",
@@ -116,7 +118,8 @@ impl Known for TranslatorMeta<'_> {
     fn player(&self) -> Option<Player> {
         let play: Play = |pack, rig, clip, knobs| {
             let Knobs { controls, curve } = knobs.clone();
-            translate::play(pack, rig, clip, &translate::Settings { controls, curve, timing: Timing::Keep })
+            let settings = translate::Settings { controls, curve, ..translate::Settings::default() };
+            translate::play(pack, rig, clip, &settings)
         };
         Some(Player { order: 0, plausible: self.strength, applies: true, play })
     }
@@ -303,8 +306,8 @@ fn centimetres(length: f32) -> f64 {
 
 /// `size_of::<TranslatorState<JOINTS, STATES>>()`, whose parameters are known only now.
 fn translator_state_bytes(rows: usize, states: usize) -> usize {
-    // Filters, mask and strength.
-    4 * (states + 3 * rows + 1)
+    // Filters and gate, mask, strength, and whether and how much the style fades.
+    4 * (states + 3 * rows + 3)
 }
 
 #[cfg(test)]

@@ -38,6 +38,12 @@ impl<'a> Tiled<'a> {
         self.columns.get()
     }
 
+    /// Part `index` of a matrix whose parts of `tiles` tiles of rows lie one below the other; `None` past the last one.
+    pub fn part(&self, tiles: usize, index: usize) -> Option<Self> {
+        let count = tiles.checked_mul(self.columns.get()).filter(|count| *count > 0)?;
+        Some(Self { tiles: self.tiles.chunks_exact(count).nth(index)?, ..*self })
+    }
+
     /// `y += W x`. Cost: `rows` (rounded up to 8) x `columns` multiply-adds.
     pub fn multiply_add(&self, x: &[f32], y: &mut [f32]) {
         for (sums, y) in self.sums(x).zip(y.chunks_mut(ROWS)) {
@@ -74,6 +80,16 @@ mod tests {
         for (row, y) in y.iter().enumerate() {
             assert_eq!(*y, 1.0 + 2.0 * entry(row, 0) - 3.0 * entry(row, 1));
         }
+    }
+
+    #[test]
+    fn a_part_is_a_matrix_of_its_own() {
+        let tiles: [[f32; ROWS]; 6] = core::array::from_fn(|tile| [tile as f32; ROWS]);
+        let matrix = Tiled::new(24, 2, &tiles).unwrap();
+        let mut y = [0.0; ROWS];
+        matrix.part(1, 2).unwrap().multiply_add(&[1.0, 10.0], &mut y);
+        assert_eq!(y, [54.0; ROWS]);
+        assert!(matrix.part(1, 3).is_none() && matrix.part(0, 0).is_none() && matrix.part(usize::MAX, 0).is_none());
     }
 
     #[test]

@@ -52,6 +52,12 @@ enum Bank<'a> {
 
 impl<'a> Fixed<'a> {
     pub fn load(pack: &Pack<'a>, meta: &TranslatorMeta, rows: usize) -> Result<Self, LoadError> {
+        // Experts have no fixed-point form.
+        let tensor = "translate/expert_bias";
+        match pack.number(tensor) {
+            Err(LoadError::NoTensor { .. }) => {}
+            found => return Err(LoadError::NumberType { tensor, found: found? }),
+        }
         let bias: &[[i32; 3]] = pack.slice("translate/bias", rows)?;
         let large = |value: &i32| value.unsigned_abs() > LARGEST_BIAS;
         refuse("translate/bias", bias.as_flattened().iter().position(large))?;

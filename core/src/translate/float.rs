@@ -1,6 +1,8 @@
 //! The linear part of a translator in f32.
 
 use super::bank::Bank;
+use super::experts::Experts;
+use super::gate::{Gate, Sight};
 use crate::kernel;
 use crate::model::{Form, LoadError, Pack, TranslatorMeta};
 
@@ -13,6 +15,7 @@ pub(super) struct Float<'a> {
     direct: &'a [[f32; 9]],
     timing: TimingHead<'a>,
     bank: Bank<'a>,
+    experts: Option<Experts<'a>>,
 }
 
 /// log2 of the duration, as a linear function of the normalised input (and, whole body, of the states).
@@ -26,7 +29,12 @@ struct TimingHead<'a> {
 }
 
 impl<'a> Float<'a> {
-    pub fn load(pack: &Pack<'a>, meta: &TranslatorMeta, rows: usize) -> Result<Self, LoadError> {
+    pub fn load(
+        pack: &Pack<'a>,
+        meta: &TranslatorMeta,
+        gate: Option<&Gate>,
+        rows: usize,
+    ) -> Result<Self, LoadError> {
         let bank = Bank::load(pack, meta, rows)?;
         let timing_states = match meta.form {
             Form::WholeBody => 2 * meta.blocks as usize + meta.drives as usize,
@@ -43,11 +51,17 @@ impl<'a> Float<'a> {
                 states: pack.slice("translate/timing_states", timing_states)?,
             },
             bank,
+            experts: Experts::load(pack, meta, gate, rows)?,
         })
     }
 
     pub fn multiply_adds(&self, rows: usize) -> usize {
-        self.bank.multiply_adds(rows)
+        self.bank.multiply_adds(rows) + self.experts.map_or(0, |experts| experts.multiply_adds(rows))
+    }
+
+    /// Whether it has output stages for several actions.
+    pub fn is_expert(&self) -> bool {
+        self.experts.is_some()
     }
 
     /// See [`Bank::settle`].
@@ -55,12 +69,15 @@ impl<'a> Float<'a> {
         self.bank.settle(input, filters);
     }
 
-    /// One frame: `output` in m; log2 of the duration.
-    pub fn step(&self, input: &[[f32; 3]], filters: &mut [f32], output: &mut [[f32; 3]]) -> f32 {
+    /// One frame: `output` in rad or m; log2 of the duration.
+    pub fn step(&self, input: &[[f32; 3]], sight: &Sight, filters: &mut [f32], output: &mut [[f32; 3]]) -> f32 {
         self.apply_direct(input, output);
         // Timing reads the states that the output reads, before they move on.
         self.bank.project(input, filters);
         let log2 = self.timing.evaluate(input.as_flattened(), filters);
+        if let Some(experts) = &self.experts {
+            experts.add(sight, filters, output);
+        }
         self.bank.advance(input, filters, output);
         log2
     }

@@ -2,6 +2,7 @@
 
 use super::fixed::Fixed;
 use super::float::Float;
+use super::gate::Gate;
 use core::marker::PhantomData;
 
 use crate::model::{AnyNumbers, LoadError, ModelMeta, Numbers, Pack, TensorType, TranslatorMeta};
@@ -9,7 +10,7 @@ use crate::rig::Rig;
 
 /// A style translator for up to `ROWS` rows of coordinates and `STATES` filter states, borrowed from a pack.
 ///
-/// Coefficients are f32, or int16 with int32 states (`kinesic quantize --precision i16`): the pack decides. `STATES` counts two for every 2 x 2 block, plus, in the whole-body form, one for every principal coordinate.
+/// Coefficients are f32, or int16 with int32 states (`kinesic quantize --precision i16`): the pack decides. `STATES` counts two for every 2 x 2 block, in the whole-body form one for every principal coordinate, and with a gate two and three for each of its features: `kinesic inspect` prints the sum.
 #[derive(Clone, Copy, Debug)]
 pub struct Translator<'a, const ROWS: usize, const STATES: usize, N = AnyNumbers> {
     pub(super) meta: TranslatorMeta<'a>,
@@ -18,6 +19,7 @@ pub struct Translator<'a, const ROWS: usize, const STATES: usize, N = AnyNumbers
     pub(super) mean: &'a [[f32; 3]],
     pub(super) inverse_deviation: &'a [[f32; 3]],
     pub(super) linear: Linear<'a>,
+    pub(super) gate: Option<Gate<'a>>,
     numbers: PhantomData<N>,
 }
 
@@ -46,10 +48,10 @@ impl<'a, const ROWS: usize, const STATES: usize, N: Numbers> Translator<'a, ROWS
             .ok_or(LoadError::NoModel { expected: "translator" })?;
         let rows = Rig::load(pack)?.rows();
         fits("ROWS", rows, ROWS)?;
-        let states = 2 * meta.blocks as usize;
-        fits("STATES", states.saturating_add(meta.drives as usize), STATES)?;
+        let gate = Gate::load(pack, rows)?;
+        fits("STATES", filters(&meta).saturating_add(gate.as_ref().map_or(0, Gate::words)), STATES)?;
         let linear = match pack.number("translate/direct")? {
-            TensorType::F32 if N::FLOAT => Linear::Float(Float::load(pack, &meta, rows)?),
+            TensorType::F32 if N::FLOAT => Linear::Float(Float::load(pack, &meta, gate.as_ref(), rows)?),
             TensorType::I16 if N::INTEGER => Linear::Fixed(Fixed::load(pack, &meta, rows)?),
             found => return Err(LoadError::NumberType { tensor: "translate/direct", found }),
         };
@@ -59,6 +61,7 @@ impl<'a, const ROWS: usize, const STATES: usize, N: Numbers> Translator<'a, ROWS
             mean: pack.slice("translate/mean", rows)?,
             inverse_deviation: pack.slice("translate/inverse_deviation", rows)?,
             linear,
+            gate,
             numbers: PhantomData,
         })
     }
@@ -73,13 +76,31 @@ impl<'a, const ROWS: usize, const STATES: usize, N: Numbers> Translator<'a, ROWS
         self.rows
     }
 
+    /// Words of a state that this model uses: the least `STATES`.
+    pub fn states(&self) -> usize {
+        filters(&self.meta) + self.gate.as_ref().map_or(0, Gate::words)
+    }
+
+    /// Whether it knows how familiar a frame is: see [`TranslatorState::familiar`](super::TranslatorState::familiar).
+    pub fn is_gated(&self) -> bool {
+        self.gate.is_some()
+    }
+
+    /// Output stages for several actions; 0 in a model of one.
+    pub fn experts(&self) -> usize {
+        match &self.linear {
+            Linear::Float(linear) if linear.is_expert() => self.gate.as_ref().map_or(0, Gate::count),
+            _ => 0,
+        }
+    }
+
     /// Multiply-adds of one frame.
     pub fn multiply_adds(&self) -> usize {
         let recursion = match &self.linear {
             Linear::Float(linear) => linear.multiply_adds(self.rows),
             Linear::Fixed(linear) => linear.multiply_adds(self.rows),
         };
-        9 * self.rows + recursion
+        9 * self.rows + recursion + self.gate.as_ref().map_or(0, Gate::multiply_adds)
     }
 
     /// Number type of the coefficients: f32, or i16 with int32 states and sums.
@@ -89,6 +110,11 @@ impl<'a, const ROWS: usize, const STATES: usize, N: Numbers> Translator<'a, ROWS
             Linear::Fixed(_) => TensorType::I16,
         }
     }
+}
+
+/// Words of the filters: states, then principal coordinates.
+pub(super) fn filters(meta: &TranslatorMeta) -> usize {
+    (2 * meta.blocks as usize).saturating_add(meta.drives as usize)
 }
 
 fn fits(parameter: &'static str, found: usize, capacity: usize) -> Result<(), LoadError> {

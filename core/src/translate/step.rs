@@ -1,6 +1,7 @@
 //! One frame of style translation.
 
-use super::model::Linear;
+use super::gate::Sight;
+use super::model::{Linear, filters};
 use super::{Timing, Translator, TranslatorState};
 use crate::engine::{Engine, FromPack};
 use crate::model::{LoadError, Numbers, Pack};
@@ -18,8 +19,8 @@ impl<const ROWS: usize, const STATES: usize, N: Numbers> Translator<'_, ROWS, ST
         }
         let input = self.normalised(&frame.rows);
         match &self.linear {
-            Linear::Float(linear) if N::FLOAT => linear.settle(&input, state.view()),
-            Linear::Fixed(linear) if N::INTEGER => linear.settle(&input, state.view()),
+            Linear::Float(linear) if N::FLOAT => linear.settle(&input, state.parts(filters(&self.meta)).0),
+            Linear::Fixed(linear) if N::INTEGER => linear.settle(&input, state.parts(filters(&self.meta)).0),
             _ => {}
         }
     }
@@ -28,20 +29,31 @@ impl<const ROWS: usize, const STATES: usize, N: Numbers> Translator<'_, ROWS, ST
     /// a length fixed at load time.
     ///
     /// Height and travel of the root are translated, heading and place are the source's. Strength 0 and a mask of 0 leave coordinates
-    /// alone, bit for bit. A frame that is not sound passes, and the filters do not see it; should the result not be sound, the frame
-    /// passes too, and the filters start anew. Cost: [`multiply_adds`](Self::multiply_adds).
+    /// alone, bit for bit. Where the model knows the frame to be unlike the training, `y` fades: see [`TranslatorState::fade`].
+    /// A frame that is not sound passes, and the filters do not see it; should the result not be sound, the frame passes too, and the
+    /// filters start anew. Cost: [`multiply_adds`](Self::multiply_adds).
     pub fn step(&self, state: &mut TranslatorState<ROWS, STATES>, frame: &mut Frame<ROWS>) -> Timing {
         if !frame.is_sound() {
             return Timing { duration: 1.0 };
         }
         let input = self.normalised(&frame.rows);
         let mut output = [[0.0; 3]; ROWS];
-        let log2 = match &self.linear {
+        let count = filters(&self.meta);
+        let sight = match &self.gate {
+            Some(gate) => gate.look(input.get(..self.rows).unwrap_or_default(), state.parts::<f32>(count).1),
+            None => Sight::EVERYTHING,
+        };
+        let mut log2 = match &self.linear {
             // Guards are constant: code of number types that N leaves out is not linked.
-            Linear::Float(linear) if N::FLOAT => linear.step(&input, state.view(), &mut output),
-            Linear::Fixed(linear) if N::INTEGER => linear.step(&input, state.view(), &mut output),
+            Linear::Float(linear) if N::FLOAT => linear.step(&input, &sight, state.parts(count).0, &mut output),
+            Linear::Fixed(linear) if N::INTEGER => linear.step(&input, state.parts(count).0, &mut output),
             _ => 0.0,
         };
+        state.familiar = sight.familiar;
+        if let (Some(gate), true) = (&self.gate, state.fade) {
+            gate.fade(sight.familiar, &frame.rows, &mut output);
+            log2 *= sight.familiar;
+        }
         if state.controls.apply(&mut output, frame, self.rows) {
             Timing { duration: exp2(log2) }
         } else {

@@ -4,7 +4,6 @@
 //! |---|---|
 //! | `landmarks` | tables of landmarks |
 //! | `shape` | regions, and the numbers that a ranking function sees |
-//! | `cluster` | k-means over contours: how the head is turned |
 //! | `strength` | ranking functions: one for all, then one a cluster that may differ from it |
 //! | [`train()`], `model` | from a table to a pack |
 //! | `synthetic` | faces for tests and the firmware workload |
@@ -12,7 +11,6 @@
 //! | [`photo`] | pictures from files, whole or refused |
 //! | [`edit()`], `warp/` | offsets for a change of strength; moves the landmarks of a picture |
 
-mod cluster;
 mod edit;
 mod evaluate;
 pub mod landmarks;
@@ -24,7 +22,6 @@ pub mod synthetic;
 mod train;
 pub mod warp;
 
-pub use cluster::{Clusters, k_means};
 pub use edit::{Edit, Wish, edit};
 pub use evaluate::{ClusterReport, Read, Report, evaluate, pair_accuracy, read_all};
 pub use landmarks::{Face, LandmarksError, LandmarksFault};

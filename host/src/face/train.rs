@@ -8,12 +8,11 @@ use rand::rngs::ChaCha8Rng;
 use rand::seq::SliceRandom;
 use rayon::prelude::*;
 
-use super::cluster::{Clusters, k_means};
 use super::landmarks::Face;
 use super::model::{ClusterModel, FaceModel, MAX_UNITS};
 use super::shape::numbers;
 use super::strength::{Labelled, Scorer, Standard, common, of_cluster};
-use crate::learn::{RegressOptions, Regressed, Samples, regress};
+use crate::learn::{Clusters, RegressOptions, Regressed, Samples, k_means, regress};
 
 /// Faces that a cluster needs in each half of the labels' range; one with fewer is joined to its neighbours.
 const NEEDED: usize = 10;

@@ -16,6 +16,8 @@ pub struct Candidate {
     pub penalty: f64,
     /// Penalty of the filter states.
     pub dynamic_penalty: f64,
+    /// An output stage for each cluster of a gate, for several actions; whole body only.
+    pub experts: bool,
 }
 
 /// Memoryless model that judges alignments.
@@ -26,7 +28,7 @@ pub const MACHINE_JUDGE: Candidate = Candidate { poles: Poles::Identified(24), .
 
 /// The static affine map of each joint: the baseline, as a candidate.
 pub const AFFINE: Candidate =
-    Candidate { coordinates: None, poles: Poles::Static, base: Base::Joint, penalty: 1e6, dynamic_penalty: 1e6 };
+    Candidate { coordinates: None, poles: Poles::Static, base: Base::Joint, penalty: 1e6, dynamic_penalty: 1e6, experts: false };
 
 /// Small whole-body model that refines alignments.
 pub const QUICK: Candidate = Candidate {
@@ -35,6 +37,7 @@ pub const QUICK: Candidate = Candidate {
     base: Base::Mean,
     penalty: 1e-2,
     dynamic_penalty: 1e-2,
+    experts: false,
 };
 
 impl Candidate {

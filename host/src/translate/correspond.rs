@@ -4,6 +4,7 @@ use crate::align::{self, AlignError, Ends, Series, Settings, Warp, aligned_path}
 use crate::clip::Canonical;
 use crate::rig::{Locals, Rig};
 
+use super::cyclic::walks;
 use super::dataset::{Correspondence, mirror_positions};
 
 /// How the frames of two clips are brought together.
@@ -18,6 +19,8 @@ pub enum Alignment {
     /// By the phase of the limbs in a mirror, first to first and last to last: where the styled clip starts on the other
     /// foot, its right answers to the source's left.
     Opposite,
+    /// Each pair by itself: in step where both clips are walks, else by warping.
+    Each,
 }
 
 impl Alignment {
@@ -26,6 +29,20 @@ impl Alignment {
         let mut ways = vec![Self::Warp, Self::Uniform];
         ways.extend(rig.frames().travels().then_some([Self::InStep, Self::Opposite]).into_iter().flatten());
         ways
+    }
+
+    /// The way of one pair.
+    fn of_pair(self, source: &Locals, target: &Locals, rig: &Rig) -> Self {
+        match self {
+            Self::Each if walks(rig, source) && walks(rig, target) => Self::InStep,
+            Self::Each => Self::Warp,
+            way => way,
+        }
+    }
+
+    /// Ends of clips that are brought together in this way: what is in step must not be judged by its ends.
+    pub fn ends(self) -> Ends {
+        if matches!(self, Self::InStep | Self::Each) { OPEN } else { Ends::Closed }
     }
 }
 
@@ -53,8 +70,8 @@ pub fn correspond(
         let settings = Settings { ends, standardise: false, ..Settings::default() };
         Ok(on_source(&align::align(Series::new(&u, width)?, Series::new(&v, width)?, &settings)?, fps))
     };
-    match alignment {
-        Alignment::Warp => {
+    match alignment.of_pair(source, target, rig) {
+        Alignment::Warp | Alignment::Each => {
             let (u, v) = (Series::new(&source.positions, channels)?, Series::new(&target.positions, channels)?);
             Ok(on_source(&align::align(u, v, &Settings::default())?, fps))
         }
@@ -68,10 +85,11 @@ pub fn correspond(
 pub fn correspond_output(
     alignment: Alignment,
     styled: &[f64],
-    target: &Locals,
+    (source, target): (&Locals, &Locals),
+    rig: &Rig,
     fps: f64,
 ) -> Result<Correspondence, AlignError> {
-    let ends = if alignment == Alignment::InStep { OPEN } else { Ends::Closed };
+    let ends = alignment.of_pair(source, target, rig).ends();
     let settings = Settings { ends, standardise: false, max_iterations: 1, ..Settings::default() };
     let channels = target.channels();
     let warp = align::align(Series::new(styled, channels)?, Series::new(&target.positions, channels)?, &settings)?;

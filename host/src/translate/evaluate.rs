@@ -93,7 +93,7 @@ impl Errors {
 impl Errors {
     /// The figures by which a pack is judged whose clips correspond so: with open ends for what is in step, since the ends do not match.
     pub fn judged(&self, alignment: Alignment) -> Errors {
-        if alignment != Alignment::InStep {
+        if alignment.ends() == Ends::Closed {
             return self.clone();
         }
         Errors {

@@ -47,6 +47,23 @@ pub fn principal(covariance: &Mat<f64>, frames: usize) -> Mat<f64> {
     })
 }
 
+/// The same take of every group where each has several, else blocks of time: what is held back is an action that was trained on.
+pub fn takes(sequences: &[Sequence]) -> (Vec<(usize, Range<usize>, usize)>, usize) {
+    let take = |index: usize| sequences[..index].iter().filter(|s| s.group == sequences[index].group).count();
+    let several = |group: usize| sequences.iter().filter(|s| s.group == group).count() >= 2;
+    if sequences.iter().all(|s| several(s.group)) {
+        let takes: Vec<usize> = (0..sequences.len()).map(|index| take(index) % BLOCKS).collect();
+        let folds = takes.iter().max().map_or(0, |most| most + 1);
+        let whole = sequences.iter().zip(takes).enumerate();
+        return (whole.map(|(index, (s, take))| (index, 0..s.covered.len(), take)).collect(), folds);
+    }
+    let cut = |(index, s): (usize, &Sequence)| {
+        let edge = |block: usize| block * s.covered.len() / BLOCKS;
+        (0..BLOCKS).map(|block| (index, edge(block)..edge(block + 1), block)).collect::<Vec<_>>()
+    };
+    (sequences.iter().enumerate().flat_map(cut).collect(), BLOCKS)
+}
+
 /// Whole groups where there are at least three, else whole sequences, else blocks of time.
 pub fn segments(sequences: &[Sequence]) -> (Vec<(usize, Range<usize>, usize)>, usize) {
     let count = sequences.len();

@@ -8,7 +8,9 @@ use rayon::prelude::*;
 use super::candidate::{Candidate, QUICK};
 use super::dataset::Sequence;
 use super::dynamics::{Dynamics, Poles, main_frequency};
-use super::features::{centred, columns, principal, segments, with_states};
+use super::experts;
+use super::features::{centred, columns, principal, segments, takes, with_states};
+use super::gate::GateModel;
 use super::identify;
 use super::model::{BankModel, TimingModel, TranslatorModel};
 use super::moments::{Base, Map, Moments, Shape, stack};
@@ -21,7 +23,7 @@ const STILL: f64 = 0.01;
 const GAP: f64 = 0.1;
 
 /// Training sequences, prepared.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Problem<'a> {
     sequences: &'a [Sequence],
     /// Mirrored copies (none, or one a sequence); they are trained on, never validated on.
@@ -69,6 +71,27 @@ impl<'a> Problem<'a> {
             segments,
             folds,
         }
+    }
+
+    /// The same, judged on other takes of the actions that it is trained on instead of on other actions.
+    pub fn by_take(self) -> Self {
+        let (segments, folds) = takes(self.sequences);
+        Self { segments, folds, ..self }
+    }
+
+    /// What the training knows of itself; `None` for a machine.
+    pub fn gate(&self) -> Option<GateModel> {
+        GateModel::fit(self.rig, self.sequences.iter().chain(self.mirrored), &self.mean, self.fps)
+    }
+
+    /// Training sequences, without mirrored copies.
+    pub fn sequences(&self) -> &[Sequence] {
+        self.sequences
+    }
+
+    /// Mean of the inputs.
+    pub fn mean(&self) -> &[f64] {
+        &self.mean
     }
 
     /// Frequency of the main resonance, Hz.
@@ -210,20 +233,45 @@ impl<'a> Problem<'a> {
         errors.iter().map(|e| (e / (frames.max(1) * self.rows()) as f64).sqrt()).collect()
     }
 
+    /// As [`validate`](Self::validate), for candidates with experts.
+    pub fn validate_experts(&self, candidates: &[Candidate], gate: &GateModel) -> Vec<f64> {
+        let frames: usize = self.segments.iter().map(|(_, range, _)| range.len()).sum();
+        let weight = |c: usize| if self.is_travel(c) { 0.0 } else { 1.0 };
+        let error = |candidate: &Candidate| {
+            let (dynamics, shared) = self.whole_body(candidate.coordinates.unwrap_or(0), candidate.poles);
+            let all = self.expert_features(gate, &shared);
+            let penalties = experts::penalties(candidate, gate.clusters(), dynamics.states(), dynamics.inputs);
+            let sum = self.moments(&all, 0..self.channels).error_with(candidate.base, &penalties, &weight);
+            (sum / (frames.max(1) * self.rows()) as f64).sqrt()
+        };
+        candidates.par_iter().map(error).collect()
+    }
+
+    fn expert_features(&self, gate: &GateModel, shared: &[Mat<f64>]) -> Vec<Mat<f64>> {
+        experts::features(gate, self.sequences.iter().chain(self.mirrored), &self.mean, shared)
+    }
+
     /// What a candidate makes of each sequence when it has not seen the fold it speaks of: coordinates, `[frames x 3 rows]`,
     /// rad or m. Frames without a partner are left to the model of all folds.
     pub fn held_out(&self, candidate: &Candidate) -> Option<Vec<Vec<f64>>> {
         let mut predicted: Vec<Vec<f64>> = self.sequences.iter().map(|s| vec![0.0; s.input.len()]).collect();
         match candidate.coordinates {
             Some(coordinates) => {
-                let (dynamics, features) = self.whole_body(coordinates, candidate.poles);
-                self.predict_held_out(candidate, &dynamics, &features, 0..self.channels, &mut predicted)?;
+                let (dynamics, mut features) = self.whole_body(coordinates, candidate.poles);
+                let mut penalties = candidate.penalties(dynamics.states(), dynamics.inputs);
+                if candidate.experts {
+                    let gate = self.gate()?;
+                    features = self.expert_features(&gate, &features);
+                    penalties = experts::penalties(candidate, gate.clusters(), dynamics.states(), dynamics.inputs);
+                }
+                self.predict_held_out(candidate.base, &penalties, &features, 0..self.channels, &mut predicted)?;
             }
             None => {
                 for joint in 0..self.rows() {
                     let (dynamics, _, features) = self.per_joint(joint, candidate.poles);
                     let channels = 3 * joint..3 * joint + 3;
-                    self.predict_held_out(candidate, &dynamics, &features, channels, &mut predicted)?;
+                    let penalties = candidate.penalties(dynamics.states(), dynamics.inputs);
+                    self.predict_held_out(candidate.base, &penalties, &features, channels, &mut predicted)?;
                 }
             }
         }
@@ -237,14 +285,13 @@ impl<'a> Problem<'a> {
 
     fn predict_held_out(
         &self,
-        candidate: &Candidate,
-        dynamics: &Dynamics,
+        base: Base,
+        penalties: &[f64],
         features: &[Mat<f64>],
         channels: Range<usize>,
         predicted: &mut [Vec<f64>],
     ) -> Option<()> {
         let folds = self.moments(features, channels.clone());
-        let penalties = candidate.penalties(dynamics.states(), dynamics.inputs);
         let mut predict = |index: usize, frames: Range<usize>, map: &Map| {
             let of = features[index].subrows(frames.start, frames.len()) * &map.weights;
             let input = self.sequences[index].input.chunks_exact(self.channels).skip(frames.start);
@@ -258,11 +305,11 @@ impl<'a> Problem<'a> {
                 }
             }
         };
-        let all = folds.total.fit(candidate.base, &penalties)?;
+        let all = folds.total.fit(base, penalties)?;
         for (index, features) in features.iter().enumerate().take(self.sequences.len()) {
             predict(index, 0..features.nrows(), &all);
         }
-        let maps: Vec<Option<Map>> = folds.train.iter().map(|m| m.fit(candidate.base, &penalties)).collect();
+        let maps: Vec<Option<Map>> = folds.train.iter().map(|m| m.fit(base, penalties)).collect();
         for (index, range, fold) in &self.segments {
             let start = self.sequences[*index].covered.start;
             predict(*index, start + range.start..start + range.end, maps[*fold].as_ref()?);
@@ -282,10 +329,15 @@ impl<'a> Problem<'a> {
             bank: BankModel::PerJoint(Vec::new()),
             timing: TimingModel { input: vec![0.0; self.channels], ..TimingModel::default() },
             strength: [0.0, 1.0],
+            gate: self.gate(),
+            experts: None,
         };
         match candidate.coordinates {
             Some(coordinates) => self.fit_whole_body(&mut model, candidate, coordinates)?,
             None => self.fit_per_joint(&mut model, candidate)?,
+        }
+        if let Some(gate) = &mut model.gate {
+            gate.normalise(&model.inverse_deviation);
         }
         model.unscale(&self.rig.levers());
         Some(model)
@@ -294,8 +346,20 @@ impl<'a> Problem<'a> {
     fn fit_whole_body(&self, model: &mut TranslatorModel, candidate: &Candidate, coordinates: usize) -> Option<()> {
         let (dynamics, features) = self.whole_body(coordinates, candidate.poles);
         let states = dynamics.states();
-        let total = self.moments(&features, 0..self.channels).total;
-        let map = total.fit(candidate.base, &candidate.penalties(states, dynamics.inputs))?;
+        let map = match model.gate.as_ref().filter(|_| candidate.experts) {
+            Some(gate) => {
+                let all = self.expert_features(gate, &features);
+                let penalties = experts::penalties(candidate, gate.clusters(), states, dynamics.inputs);
+                let map = self.moments(&all, 0..self.channels).total.fit(candidate.base, &penalties)?;
+                let (map, experts) = experts::split(map, &dynamics, gate.clusters(), &all)?;
+                model.experts = Some(experts);
+                map
+            }
+            None => {
+                let total = self.moments(&features, 0..self.channels).total;
+                total.fit(candidate.base, &candidate.penalties(states, dynamics.inputs))?
+            }
+        };
         for joint in 0..self.rows() {
             push_joint(model, &map, joint, &self.mean[3 * joint..3 * joint + 3], 1.0);
         }
@@ -409,9 +473,14 @@ struct FoldMoments {
 impl FoldMoments {
     /// Sum over folds of the squared error on held-back frames.
     fn error(&self, candidate: &Candidate, states: usize, weight: &dyn Fn(usize) -> f64) -> f64 {
+        let drives = self.total.features() - states;
+        self.error_with(candidate.base, &candidate.penalties(states, drives), weight)
+    }
+
+    /// The same for given penalties.
+    fn error_with(&self, base: Base, penalties: &[f64], weight: &dyn Fn(usize) -> f64) -> f64 {
         let error = |(train, held): (&Moments, &Moments)| {
-            let drives = train.features() - states;
-            let map = train.fit(candidate.base, &candidate.penalties(states, drives));
+            let map = train.fit(base, penalties);
             map.map_or(f64::INFINITY, |map| held.squared_error(&map, weight))
         };
         self.train.iter().zip(&self.held).map(error).sum()

@@ -7,6 +7,7 @@
 //! | `dataset` | training sequences: source frames and wanted output |
 //! | `dynamics` | candidate dynamics: banks of poles, simulation |
 //! | [`identify`] | dynamics from data: impulse response, truncation, modal form |
+//! | `gate`, `experts` | how familiar a frame is; output stages for several actions |
 //! | `candidate`, `features`, `moments`, `fit` | ridge regression and cross-validation from second moments |
 //! | [`train`](train()) | the whole of it |
 //! | `model` | a trained translator, and its pack |
@@ -19,8 +20,10 @@ mod cyclic;
 mod dataset;
 mod dynamics;
 mod evaluate;
+mod experts;
 mod features;
 mod fit;
+mod gate;
 pub mod identify;
 mod model;
 mod moments;
@@ -31,11 +34,13 @@ mod train;
 
 pub use candidate::{AFFINE, Candidate};
 pub use correspond::{Alignment, OPEN};
+pub use dataset::Mirror;
 pub use dynamics::{Dynamics, Poles};
 pub use evaluate::{Angles, Errors, EvaluateError, NamedPair, PairReport, Report, evaluate};
-pub use model::{BankModel, TimingModel, TranslatorModel};
+pub use gate::GateModel;
+pub use model::{BankModel, ExpertModel, TimingModel, TranslatorModel};
 pub use moments::Base;
-pub use play::{HostTranslator, Settings, TIMING_STRENGTH, Timing, play, play_on_clock};
+pub use play::{HostTranslator, Played, Settings, TIMING_STRENGTH, Timing, play, play_on_clock};
 pub use strength::plausible;
 pub use train::{
     DEFAULT_ORDER, FormChoice, Stage, TrainError, TrainOptions, TrainPair, Trained, partners, train, train_kept,

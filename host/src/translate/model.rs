@@ -2,6 +2,7 @@
 
 use kinesic::model::{Form, Kind, ModelMeta, TranslatorMeta};
 
+use super::gate::GateModel;
 use crate::pack::{PackWriter, Provenance};
 use crate::rig::Rig;
 
@@ -26,6 +27,23 @@ pub struct TranslatorModel {
     pub timing: TimingModel,
     /// Plausible strengths.
     pub strength: [f64; 2],
+    /// What it knows of its training: bodies only.
+    pub gate: Option<GateModel>,
+    /// Output stages of several actions, one a cluster of the gate.
+    pub experts: Option<ExpertModel>,
+}
+
+/// Output stages of low rank. Matrices are row-major.
+#[derive(Clone, Debug)]
+pub struct ExpertModel {
+    /// Directions in which they write.
+    pub rank: usize,
+    /// `rank x (states + drives)` of each expert.
+    pub input: Vec<f64>,
+    /// `rank` of each expert.
+    pub bias: Vec<f64>,
+    /// `[3 rows x rank]`.
+    pub output: Vec<f64>,
 }
 
 /// The dynamic part of a translator.
@@ -88,6 +106,14 @@ impl TranslatorModel {
                 }
             }
         }
+        if let Some(gate) = &mut self.gate {
+            gate.coarse.iter_mut().zip(levers).for_each(|(coarse, lever)| *coarse /= lever);
+        }
+        if let Some(experts) = &mut self.experts {
+            for (row, lever) in experts.output.chunks_exact_mut(experts.rank).zip(levers) {
+                row.iter_mut().for_each(|weight| *weight /= lever);
+            }
+        }
     }
 
     /// Inputs of the shared model, 0 in the per-joint form.
@@ -125,6 +151,19 @@ impl TranslatorModel {
         pack.f32s("translate/timing", 3, &single(&[self.timing.bias, low, high]));
         pack.f32s("translate/timing_input", 1, &single(&self.timing.input));
         pack.f32s("translate/timing_states", 1, &single(&self.timing.states));
+        if let Some(gate) = &self.gate {
+            pack.tiled("translate/gate_project", self.mean.len(), &single(&gate.project));
+            pack.f32s("translate/gate_speed", 1, &single(&gate.speed));
+            pack.f32s("translate/gate_centres", 2, &single(gate.centres.as_flattened()));
+            pack.f32s("translate/gate_rates", 4, &single(&gate.rates));
+            pack.f32s("translate/gate_coarse", 3, &single(&gate.coarse));
+        }
+        if let Some(experts) = &self.experts {
+            let columns = experts.input.len() / experts.bias.len().max(1);
+            pack.tiled("translate/expert_input", columns, &single(&experts.input));
+            pack.f32s("translate/expert_bias", 1, &single(&experts.bias));
+            pack.tiled("translate/expert_output", experts.rank, &single(&experts.output));
+        }
         match &self.bank {
             BankModel::PerJoint(bank) => {
                 let counts: Vec<u16> = bank.iter().map(|blocks| blocks.len() as u16).collect();

@@ -28,7 +28,7 @@ pub enum Timing {
 }
 
 /// How a pack is played.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Settings {
     /// Strength and mask.
     pub controls: Controls<MAX_ROWS>,
@@ -36,27 +36,56 @@ pub struct Settings {
     pub curve: Option<Curve>,
     /// The clock.
     pub timing: Timing,
+    /// Whether the style fades where the motion is unlike the training.
+    pub fade: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { controls: Controls::default(), curve: None, timing: Timing::default(), fade: true }
+    }
+}
+
+/// A clip played frame for frame.
+#[derive(Clone, Debug)]
+pub struct Played {
+    /// The result.
+    pub clip: Clip,
+    /// When each frame is due by the learned timing, in frames, rising.
+    pub clock: Vec<f64>,
+    /// How familiar each frame is, 0 to 1; `None` for a pack that does not know.
+    pub familiar: Option<Vec<f32>>,
+}
+
+impl Played {
+    /// Percent of the frames of which less than half of the style counts; `None` for a pack that does not know.
+    pub fn unfamiliar_percent(&self) -> Option<f64> {
+        let familiar = self.familiar.as_ref()?;
+        let strange = familiar.iter().filter(|familiar| **familiar < 0.5).count();
+        Some(100.0 * strange as f64 / familiar.len().max(1) as f64)
+    }
 }
 
 /// Translates a clip on the pack's rig and at its frame rate, from the state that holding the first frame leads to.
 pub fn play(pack: &Pack, rig: &Rig, source: &Clip, settings: &Settings) -> Result<Clip, LoadError> {
-    let (styled, clock) = play_on_clock(pack, rig, source, settings)?;
+    let Played { clip, clock, .. } = play_on_clock(pack, rig, source, settings)?;
     Ok(match settings.timing {
-        Timing::Keep => styled,
-        Timing::Learned => styled.on_clock(&clock, styled.frame_time),
+        Timing::Keep => clip,
+        Timing::Learned => clip.on_clock(&clock, clip.frame_time),
     })
 }
 
-/// The clip frame for frame, and when each frame is due by the learned timing, in frames, rising.
+/// The same frame for frame, with what the learned timing and the gate say of each.
 pub fn play_on_clock(
     pack: &Pack,
     rig: &Rig,
     source: &Clip,
     settings: &Settings,
-) -> Result<(Clip, Vec<f64>), LoadError> {
+) -> Result<Played, LoadError> {
     let translator = HostTranslator::load(pack)?;
     let mut state = Box::new(TranslatorState::new());
-    state.controls = settings.controls;
+    (state.controls, state.fade) = (settings.controls, settings.fade);
+    let mut familiar = Vec::with_capacity(source.frames());
     let mut clock = Vec::with_capacity(source.frames());
     let mut now = 0.0;
     let knobs = Knobs { controls: settings.controls, curve: settings.curve.clone() };
@@ -66,10 +95,11 @@ pub fn play_on_clock(
             translator.start(&mut state, frame);
         }
         let timing = translator.step(&mut state, frame);
+        familiar.push(state.familiar());
         clock.push(now);
         // Strength acts on the clock as on the pose (up to `TIMING_STRENGTH`): 0 keeps it.
         let strength = state.controls.strength.clamp(-TIMING_STRENGTH, TIMING_STRENGTH);
         now += f64::from(timing.duration).powf(f64::from(strength));
     });
-    Ok((styled, clock))
+    Ok(Played { clip: styled, clock, familiar: translator.is_gated().then_some(familiar) })
 }

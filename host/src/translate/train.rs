@@ -42,11 +42,13 @@ pub struct TrainOptions {
     pub alignment: Option<Alignment>,
     /// Train on mirrored copies too; chosen by validation unless given.
     pub mirror: Option<bool>,
+    /// Whether the pack of a body knows how familiar a frame is. Several actions in one pack need it.
+    pub gate: bool,
 }
 
 impl Default for TrainOptions {
     fn default() -> Self {
-        Self { order: None, form: FormChoice::Auto, alignment: None, mirror: None }
+        Self { order: None, form: FormChoice::Auto, alignment: None, mirror: None, gate: true }
     }
 }
 
@@ -58,6 +60,8 @@ const WHOLE_BODY_ORDER: usize = 64;
 const MARGIN: f64 = 0.03;
 /// Part of the whole-body form's error that the per-joint form may have to replace it: on another take it loses more.
 const PER_JOINT: f64 = 0.9;
+/// Part of a plain model's error that a model of several actions may have to replace it: it is larger.
+const SEVERAL: f64 = 0.9;
 /// Factor by which a warp of a machine's clips must be better than one even clock: it leaves out a part of every reaction.
 const ONE_CLOCK: f64 = 1.5;
 /// Times that the styled clip is aligned anew with what the model makes of the source.
@@ -164,7 +168,7 @@ pub fn train_kept(
     let partners = partners(rig);
     let ways = options.alignment.map_or_else(|| ways(rig, pairs), |way| vec![way]);
     // Alone, what is in step is judged as it will be; beside others all are judged alike.
-    let ends = if ways == [Alignment::InStep] { OPEN } else { Ends::Closed };
+    let ends = if let [way] = ways[..] { way.ends() } else { Ends::Closed };
     let align = |way| aligned((way, ends), rig, pairs, &partners, fps);
     let tried: Vec<(Alignment, f64, Option<Vec<Sequence>>)> = ways
         .par_iter()
@@ -207,14 +211,14 @@ pub fn train_kept(
     let whole_body = best_of(&|c| c.coordinates.is_some());
     let per_joint = best_of(&|c| c.coordinates.is_none());
     // What is in step by choice must not be judged by its ends.
-    let ends = if alignment == Alignment::InStep { OPEN } else { Ends::Closed };
+    let ends = alignment.ends();
     let mut forms = Vec::new();
     for candidate in per_joint.into_iter().chain(whole_body) {
         let error = || held_out_error(rig, &problem, &candidate, pairs, ends);
         forms.push((candidate, 100.0 * cache.number(&format!("form {candidate:?}"), error)?));
     }
     // The plain affine map, on the plain time warp, must be beaten clearly to be replaced.
-    let plain = if alignment == Alignment::InStep { sequences.clone() } else { plain_sequences(rig, pairs)? };
+    let plain = if alignment.ends() == OPEN { sequences.clone() } else { plain_sequences(rig, pairs)? };
     let plain = Problem::new(rig, &plain, &[], fps);
     if options.form == FormChoice::Auto {
         let error = || held_out_error(rig, &plain, &AFFINE, pairs, ends);
@@ -224,11 +228,19 @@ pub fn train_kept(
     let judged = |(candidate, error): &(Candidate, f64)| handicap(candidate) * error;
     let best = *forms.iter().min_by(|a, b| judged(a).total_cmp(&judged(b))).ok_or(TrainError::Undetermined)?;
     let simple = forms.iter().find(|(candidate, error)| *candidate == AFFINE && best.1 > (1.0 - MARGIN) * error);
-    let candidate = *simple.unwrap_or(&best);
+    let mut candidate = *simple.unwrap_or(&best);
+    if options.gate
+        && options.form != FormChoice::PerJoint
+        && let Some(found) = several(&problem, &candidate.0, options, cache)
+    {
+        candidate = (found, 100.0 * held_out_error(rig, &problem, &found, pairs, ends)?);
+        forms.push(candidate);
+    }
 
     progress(Stage::Fit);
     let problem = if candidate.0 == AFFINE { plain } else { problem };
-    let model = problem.fit(&candidate.0, style).ok_or(TrainError::Undetermined)?;
+    let mut model = problem.fit(&candidate.0, style).ok_or(TrainError::Undetermined)?;
+    model.gate = model.gate.filter(|_| options.gate);
     Ok(Trained {
         model,
         baselines: baselines(pairs)?,
@@ -242,11 +254,42 @@ pub fn train_kept(
     })
 }
 
-/// The ways to try: in step alone where most pairs are walks, since a walk whose left answers right can neither be blended nor masked.
+/// The ways to try: in step alone for walks, since a walk whose left answers right can neither be blended nor masked; each pair by itself
+/// where some are walks and some are not.
 fn ways(rig: &Rig, pairs: &[TrainPair]) -> Vec<Alignment> {
     let both_walk = |pair: &&TrainPair| walks(rig, &pair.source) && walks(rig, &pair.target);
-    let walking = pairs.iter().filter(both_walk).count();
-    if 2 * walking > pairs.len() { vec![Alignment::InStep] } else { Alignment::of(rig) }
+    match pairs.iter().filter(both_walk).count() {
+        0 => Alignment::of(rig),
+        all if all == pairs.len() => vec![Alignment::InStep],
+        _ => vec![Alignment::Each],
+    }
+}
+
+/// The best candidate with experts, where the pairs are of several actions and it is clearly better than `plain` on takes that it has not seen.
+fn several(problem: &Problem, plain: &Candidate, options: &TrainOptions, cache: &StepCache) -> Option<Candidate> {
+    let problem = problem.clone().by_take();
+    let gate = problem.actions()?;
+    let limit = options.order.unwrap_or(WHOLE_BODY_ORDER);
+    let mut grid = Vec::new();
+    for coordinates in [8, 12] {
+        for penalty in [1e-3, 3e-3, 1e-2, 1e-1] {
+            let poles = Poles::Relaxation;
+            if poles.states(coordinates) <= limit {
+                grid.push(Candidate {
+                    coordinates: Some(coordinates),
+                    poles,
+                    base: Base::Identity,
+                    penalty,
+                    dynamic_penalty: penalty,
+                    experts: true,
+                });
+            }
+        }
+    }
+    let plain = problem.validate(&[*plain], cache, "by take")[0];
+    let errors = cache.always("experts", || problem.validate_experts(&grid, &gate));
+    let best = grid.iter().zip(errors).min_by(|a, b| a.1.total_cmp(&b.1))?;
+    (best.1 < SEVERAL * plain).then_some(*best.0)
 }
 
 /// Aligned RMS joint distance of what a candidate makes of the folds that it has not seen, root mean square of the pairs, m.
@@ -310,7 +353,10 @@ fn aligned(
     let one_clock = way == Alignment::Uniform && !rig.frames().travels();
     for _ in 0..if one_clock { 0 } else { REALIGNMENTS } {
         let styled = quick(&current)?;
-        current = sequences(&|index, pair| correspond_output(way, &styled[index], &pair.target, fps))?;
+        let again = |index: usize, pair: &TrainPair| {
+            correspond_output(way, &styled[index], (&pair.source, &pair.target), rig, fps)
+        };
+        current = sequences(&again)?;
     }
     let judge = if rig.frames().travels() { JUDGE } else { MACHINE_JUDGE };
     Ok((held_out_error(rig, &Problem::new(rig, &current, &[], fps), &judge, pairs, ends)?, current))
@@ -367,6 +413,7 @@ fn grid(rig: &Rig, options: &TrainOptions) -> Vec<Candidate> {
                         base: *base,
                         penalty,
                         dynamic_penalty: factor * penalty,
+                        experts: false,
                     }));
                 }
             }

@@ -34,7 +34,8 @@ pub enum Shown {
 pub struct Tally {
     /// By kind of features; of what was shown; of the wanted style; called so.
     called: [[[[usize; COUNT]; COUNT]; NAMES.len()]; SEEN],
-    pub angles: Vec<Errors>,
+    /// What was done, and how far from the target it came out.
+    pub errors: Vec<(String, Errors)>,
     /// Sums of squared deviations of rotations by style: of targets, of outputs.
     spread: [[f64; 2]; COUNT],
 }
@@ -72,13 +73,48 @@ impl Tally {
         let share = |[target, output]: &[f64; 2]| format!(" {:.0} |", 100.0 * (output / target).sqrt());
         println!("|{}", self.spread[1..].iter().map(share).collect::<String>());
         self.print_angles();
+        self.print_distances();
+    }
+
+    /// Open ends: a take may begin on the other foot.
+    fn print_distances(&self) {
+        println!("\nAligned RMS joint distance to the target, cm, open ends\n");
+        println!("| action | outputs | source | offset | affine | **output** |\n|---|---|---|---|---|---|");
+        let mut names: Vec<&str> = Vec::new();
+        for (name, _) in &self.errors {
+            if !names.contains(&name.as_str()) {
+                names.push(name);
+            }
+        }
+        let row = |name: &str, errors: Vec<&Errors>| {
+            let mean = |of: fn(&Errors) -> f64| errors.iter().map(|e| of(e)).sum::<f64>() / errors.len() as f64;
+            let [source, offset, affine, output] = [
+                mean(|e| e.open_identity_cm),
+                mean(|e| e.open_offset_cm),
+                mean(|e| e.open_affine_cm),
+                mean(|e| e.open_error_cm),
+            ];
+            let count = errors.len();
+            println!("| {name} | {count} | {source:.2} | {offset:.2} | {affine:.2} | **{output:.2}** |");
+        };
+        for name in &names {
+            row(name, self.errors.iter().filter(|(of, _)| of == name).map(|(_, errors)| errors).collect());
+        }
+        for (name, in_a_mirror) in [("all", false), ("all in a mirror", true)] {
+            let of = self.errors.iter().filter(|(name, _)| name.ends_with("mirror") == in_a_mirror);
+            let errors: Vec<&Errors> = of.map(|(_, errors)| errors).collect();
+            if !errors.is_empty() {
+                row(name, errors);
+            }
+        }
     }
 
     fn print_angles(&self) {
-        println!("\nMean angle to the target, degrees; mean of {} outputs\n", self.angles.len());
+        let plain = || self.errors.iter().filter(|(name, _)| !name.ends_with("mirror")).map(|(_, errors)| errors);
+        println!("\nMean angle to the target, degrees; mean of {} outputs\n", plain().count());
         println!("| joint | source | offset | affine | **output** |\n|---|---|---|---|---|");
         let of = |pick: fn(&Angles) -> Option<&Degrees>| {
-            Degrees::mean(self.angles.iter().filter_map(|errors| pick(&errors.degrees)).collect::<Vec<_>>().into_iter())
+            Degrees::mean(plain().filter_map(|errors| pick(&errors.degrees)).collect::<Vec<_>>().into_iter())
         };
         let columns =
             [of(|a| Some(&a.identity)), of(|a| a.offset.as_ref()), of(|a| a.affine.as_ref()), of(|a| Some(&a.error))];

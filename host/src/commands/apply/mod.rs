@@ -86,6 +86,9 @@ pub struct Args {
     /// Hold feet where they stand in the clip, or leave them as they come [default: lock; on the pack's skeleton free, as on the device]
     #[arg(long, value_enum)]
     feet: Option<Feet>,
+    /// Where the clip is unlike the training of a translator: fade the style, or keep all of it
+    #[arg(long, value_enum, default_value_t = Unfamiliar::Fade)]
+    unfamiliar: Unfamiliar,
     /// Print the results as one JSON object
     #[arg(long)]
     json: bool,
@@ -101,6 +104,14 @@ enum Clock {
     Learned,
 }
 
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Unfamiliar {
+    /// As on the device unless told otherwise
+    Fade,
+    /// The whole style everywhere
+    Keep,
+}
+
 #[derive(Serialize)]
 struct Summary {
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -110,6 +121,9 @@ struct Summary {
     frame_rate: f64,
     #[serde(flatten)]
     quality: Judged,
+    /// Percent of the frames that are unlike the training; absent for packs that do not know.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unfamiliar_percent: Option<f64>,
     /// What the pack's limits did.
     #[serde(skip_serializing_if = "Option::is_none")]
     limits: Option<Clamps>,
@@ -117,6 +131,9 @@ struct Summary {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     notes: Vec<String>,
 }
+
+/// Percent of a clip from which its being unlike the training is worth a note.
+const UNFAMILIAR: f64 = 5.0;
 
 /// What plays every clip.
 struct Stage<'p> {
@@ -194,6 +211,7 @@ impl Stage<'_> {
             frames: styled.frames(),
             frame_rate: 1.0 / styled.frame_time,
             quality: landed.judge(&styled),
+            unfamiliar_percent: played.unfamiliar,
             limits,
             notes: self.notes(&played),
         })
@@ -206,6 +224,13 @@ impl Stage<'_> {
         let mut notes = Vec::new();
         if !strength.range().iter().all(|strength| (low..=high).contains(strength)) {
             notes.push(format!("strength {strength} is outside the plausible range of this pack, {low} to {high}"));
+        }
+        if let Some(percent) = played.unfamiliar.filter(|percent| *percent >= UNFAMILIAR) {
+            let what = match self.args.unfamiliar {
+                Unfamiliar::Fade => "the style fades there (--unfamiliar keep keeps it)",
+                Unfamiliar::Keep => "and keeps all of the style",
+            };
+            notes.push(format!("{percent:.0} % of the clip is unlike the training: {what}"));
         }
         if strength.end() > played.clip.duration() + played.clip.frame_time && strength.constant().is_none() {
             let (end, lasts) = (strength.end(), played.clip.duration());
@@ -235,12 +260,13 @@ impl Summary {
     }
 }
 
-/// What a pack made on its rig, frame for frame; when each frame is due, in frames, if the pack decides; and the strengths that it calls
-/// plausible.
+/// What a pack made on its rig, frame for frame; when each frame is due, in frames, if the pack decides; the strengths that it calls
+/// plausible; and the percentage of frames that are unlike its training, if it knows.
 struct Played {
     clip: Clip,
     clock: Option<Vec<f64>>,
     plausible: [f32; 2],
+    unfamiliar: Option<f64>,
 }
 
 impl Played {
@@ -271,18 +297,24 @@ fn play(args: &Args, pack: &Pack, rig: &Rig, clip: Option<&Clip>, knobs: &Knobs)
     let models: Vec<ModelMeta> = pack.metadata().models.iter().collect();
     let learned = matches!(args.timing, Clock::Learned);
     match (engines::player(pack, true), clip) {
-        (Some(("translator", player)), Some(clip)) if learned => {
-            check_length(args, pack, clip)?;
-            let settings = translate::Settings { controls, curve: curve(), timing: Timing::Learned };
-            let (clip, clock) = translate::play_on_clock(pack, rig, clip, &settings).into_diagnostic()?;
-            return Ok(Played { clip, clock: Some(clock), plausible: player.plausible });
+        (Some(("translator", player)), Some(clip)) => {
+            let timing = if learned { Timing::Learned } else { Timing::Keep };
+            if learned {
+                check_length(args, pack, clip)?;
+            }
+            let fade = args.unfamiliar == Unfamiliar::Fade;
+            let settings = translate::Settings { controls, curve: curve(), timing, fade };
+            let played = translate::play_on_clock(pack, rig, clip, &settings).into_diagnostic()?;
+            let unfamiliar = played.unfamiliar_percent();
+            let clock = learned.then_some(played.clock);
+            return Ok(Played { clip: played.clip, clock, plausible: player.plausible, unfamiliar });
         }
         (Some((engine, _)), Some(_)) if learned => {
             return Err(miette!("--timing learned: the {engine} of this pack has no timing, only a translator has"));
         }
         (Some((_, player)), Some(clip)) => {
             let clip = (player.play)(pack, rig, clip, knobs).into_diagnostic()?;
-            return Ok(Played { clip, clock: None, plausible: player.plausible });
+            return Ok(Played { clip, clock: None, plausible: player.plausible, unfamiliar: None });
         }
         _ => {}
     }
@@ -295,7 +327,7 @@ fn play(args: &Args, pack: &Pack, rig: &Rig, clip: Option<&Clip>, knobs: &Knobs)
         if clip.frames() == 0 {
             return Err(miette!(help = "name a clip to play", "the pack stores no motion"));
         }
-        return Ok(Played { clip, clock: None, plausible: meta.strength });
+        return Ok(Played { clip, clock: None, plausible: meta.strength, unfamiliar: None });
     }
     let (found, help) = match args.stored {
         true => ("--stored: the pack holds no style components, which alone store a motion", "name a clip to play"),

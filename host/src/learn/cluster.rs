@@ -1,4 +1,4 @@
-//! Clusters of head pose: k-means over normalised contours.
+//! Clusters: k-means.
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
