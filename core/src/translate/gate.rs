@@ -1,7 +1,7 @@
 //! What the body is doing, beside what it did in the training: how familiar a frame is, and which of several experts know it.
 //!
 //! A few features of the input are smoothed, and so is how fast they change: a point. The training's points make clusters. Novelty `n` is
-//! the squared distance to the nearest cluster, in units of what the training allows; the style counts `1 / (1 + n^4)`, and for the rest a
+//! the squared distance to the nearest cluster, in units of what the training allows; the style counts `1 / (1 + n^8)`, and for the rest a
 //! change that suits any motion. Experts are weighted by how much nearer than the third nearest cluster their own is.
 
 use crate::kernel::{ROWS as TILE, Tiled};
@@ -13,7 +13,7 @@ const FEATURES: usize = TILE;
 const HEAD: usize = 2;
 /// Words of a feature: its last value, and what is smoothed of it and of its speed.
 const MEMORY: usize = 3;
-/// Novelties beyond are this one: the square of the square stays a number.
+/// Novelties beyond are this one.
 const LARGEST: f32 = 1e6;
 
 #[derive(Clone, Copy, Debug)]
@@ -90,8 +90,7 @@ impl<'a> Gate<'a> {
         TILE * self.project.columns() + 4 * self.centres.len() + 6 * self.coarse.len()
     }
 
-    /// Looks at a frame. `memory` has [`words`](Self::words) words; all zero, it begins with this frame, as if it had been held at the speeds
-    /// of the nearest cluster.
+    /// Looks at a frame. `memory` has [`words`](Self::words) words; all zero, it begins with this frame, as if it had been held.
     pub fn look(&self, input: &[[f32; 3]], memory: &mut [f32]) -> Sight {
         let mut features = [0.0; FEATURES];
         self.project.multiply_add(input.as_flattened(), &mut features);
@@ -108,32 +107,29 @@ impl<'a> Gate<'a> {
             *speed += speed_rate * (change - *speed);
             *last = now;
         }
-        if first {
-            *started = 1.0;
-            let [(_, nearest), ..] = self.nearest(own, 0.0);
-            let speeds = self.centres.chunks_exact(self.speed.len()).nth(nearest).unwrap_or_default();
-            own.iter_mut().zip(speeds).for_each(|([_, _, own], [_, speed])| *own = *speed);
-        }
-        let [(a, first_near), (b, second_near), (c, _)] = self.nearest(own, 1.0);
+        *started = 1.0;
+        let [(a, first_near), (b, second_near), (c, _)] = self.nearest(own);
         let distance = a.min(LARGEST);
         *novelty = if first { distance } else { *novelty + novelty_rate * (distance - *novelty) };
+        // Sharp, so that what is between counts one way or the other.
         let square = (*novelty * inverse) * (*novelty * inverse);
+        let fourth = square * square;
         let [of_first, of_second] = [(c - a) * (c - a), (c - b) * (c - b)];
         let sum = of_first + of_second;
         let part = if sum > 0.0 && sum.is_finite() { of_first / sum } else { 0.5 };
         Sight {
-            familiar: 1.0 / (1.0 + square * square),
+            familiar: 1.0 / (1.0 + fourth * fourth),
             near: [(first_near, part), (second_near, 1.0 - part)],
         }
     }
 
-    /// Squared distances and numbers of the three nearest clusters, the nearest first. `speeds` is the weight of the speeds.
-    fn nearest(&self, own: &[[f32; MEMORY]], speeds: f32) -> [(f32, usize); 3] {
+    /// Squared distances and numbers of the three nearest clusters, the nearest first.
+    fn nearest(&self, own: &[[f32; MEMORY]]) -> [(f32, usize); 3] {
         let mut near = [(f32::MAX, 0); 3];
         for (index, centre) in self.centres.chunks_exact(self.speed.len().max(1)).enumerate() {
             let mut sum = 0.0;
             for ([_, slow, speed], [at, rate]) in own.iter().zip(centre) {
-                sum += (slow - at) * (slow - at) + speeds * ((speed - rate) * (speed - rate));
+                sum += (slow - at) * (slow - at) + (speed - rate) * (speed - rate);
             }
             let [first, second, third] = near;
             let new = (sum, index);

@@ -25,6 +25,17 @@ impl<const ROWS: usize, const STATES: usize, N: Numbers> Translator<'_, ROWS, ST
         }
     }
 
+    /// Lets the gate see a frame that is not translated: how a clip moves before its first frame, say. After [`start`](Self::start), by which the
+    /// body has stood still for ever. A frame that is not sound, or a model without a gate, changes nothing.
+    pub fn watch(&self, state: &mut TranslatorState<ROWS, STATES>, frame: &Frame<ROWS>) {
+        if let (Some(gate), true) = (&self.gate, frame.is_sound()) {
+            let input = self.normalised(&frame.rows);
+            let words = state.parts::<f32>(filters(&self.meta)).1;
+            let sight = gate.look(input.get(..self.rows).unwrap_or_default(), words);
+            state.familiar = sight.familiar;
+        }
+    }
+
     /// Translates one frame in place: `x + strength mask (y - x)`, where `y` is what the model makes of `x`. Infallible; every loop has
     /// a length fixed at load time.
     ///

@@ -29,7 +29,7 @@ const TRAVEL: f64 = 0.35;
 const HEIGHT: f64 = 0.12;
 const HIPS: f64 = 0.95;
 /// Novelty at which half of the style counts: at least so much, and so many times the most that nearly all of the training has.
-const NOVELTY: f64 = 10.0;
+const NOVELTY: f64 = 8.0;
 const OF_TRAINING: f64 = 2.0;
 /// Part of the mean change of posture that suits any motion.
 const COARSE: f64 = 0.5;
@@ -84,7 +84,7 @@ impl GateModel {
             rates: [TIMES[0], TIMES[1], TIMES[2], 0.0].map(|time| 1.0 - (-1.0 / (fps * time)).exp()),
             coarse: coarse(sequences, mean.len()),
         };
-        let points: Points = inputs.iter().flat_map(|input| gate.points(input, None)).collect();
+        let points: Points = inputs.iter().flat_map(|input| gate.points(input)).collect();
         let size = mean[1] / rig.levers()[1] / HIPS;
         let spread = gate.cluster(&points, size)?;
         for ((row, speed), [of_value, of_speed]) in
@@ -166,31 +166,26 @@ impl GateModel {
         Some(spread)
     }
 
-    /// Smoothed features of every frame, and their speeds, as the device has them. Speeds begin with those of the nearest of the centres, or
-    /// where there are none yet with their means.
-    fn points(&self, input: &Mat<f64>, begin: Option<&[[f64; 2]]>) -> Points {
-        if input.nrows() == 0 {
+    /// Smoothed features of every frame, and their speeds, as the device has them once it has watched: they begin with their means over
+    /// the clip's beginning.
+    fn points(&self, input: &Mat<f64>) -> Points {
+        if input.nrows() < 2 {
             return Points::new();
         }
         let channels = input.ncols();
         let project = Mat::from_fn(channels, FEATURES, |c, f| self.project[f * channels + c]);
         let now = input * project;
         let [of_feature, of_speed, ..] = self.rates;
-        let change = |t: usize, f: usize| self.speed[f] * (now[(t, f)] - now[(t.saturating_sub(1), f)]).abs();
-        let usual = |f| (0..input.nrows()).map(|t| change(t, f)).sum::<f64>() / input.nrows() as f64;
-        let mut point: Vec<[f64; 2]> = (0..FEATURES).map(|f| [now[(0, f)], usual(f)]).collect();
-        if let Some(centres) = begin {
-            let far = |centre: &&[[f64; 2]]| point.iter().zip(*centre).map(|(p, c)| (p[0] - c[0]).powi(2)).sum::<f64>();
-            let nearest = centres.chunks_exact(FEATURES).min_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or_default();
-            point.iter_mut().zip(nearest).for_each(|(point, centre)| point[1] = centre[1]);
-        }
+        let change = |t: usize, f: usize| self.speed[f] * (now[(t, f)] - now[(t - 1, f)]).abs();
+        let mean = |frames: usize, of: &dyn Fn(usize) -> f64| (1..=frames).map(of).sum::<f64>() / frames as f64;
+        let [few, more] = [of_feature, of_speed].map(|rate| ((1.0 / rate) as usize).clamp(1, input.nrows() - 1));
+        let begin = |f| [mean(few, &|t| now[(t, f)]), mean(more, &|t| change(t, f))];
+        let mut point: Vec<[f64; 2]> = (0..FEATURES).map(begin).collect();
         let frames = (0..input.nrows()).map(|t| {
-            for (f, [value, speed]) in point.iter_mut().enumerate() {
+            // The first frame has no travel and no change.
+            for (f, [value, speed]) in point.iter_mut().enumerate().filter(|_| t > 0) {
                 *value += of_feature * (now[(t, f)] - *value);
-                // The device has no change in its first frame.
-                if t > 0 || begin.is_none() {
-                    *speed += of_speed * (change(t, f) - *speed);
-                }
+                *speed += of_speed * (change(t, f) - *speed);
             }
             point.clone()
         });
@@ -199,7 +194,7 @@ impl GateModel {
 
     /// What the device's gate sees in every frame of a centred input.
     pub fn look(&self, input: &Mat<f64>) -> Vec<Sight> {
-        self.points(input, Some(&self.centres)).iter().map(|point| self.sight(point)).collect()
+        self.points(input).iter().map(|point| self.sight(point)).collect()
     }
 
     fn sight(&self, point: &[[f64; 2]]) -> Sight {

@@ -34,7 +34,6 @@ mod train;
 
 pub use candidate::{AFFINE, Candidate};
 pub use correspond::{Alignment, OPEN};
-pub use dataset::Mirror;
 pub use dynamics::{Dynamics, Poles};
 pub use evaluate::{Angles, Errors, EvaluateError, NamedPair, PairReport, Report, evaluate};
 pub use gate::GateModel;

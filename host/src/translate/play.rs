@@ -5,7 +5,7 @@ use kinesic::model::LoadError;
 use kinesic::{Pack, Translator, TranslatorState};
 
 use crate::clip::Clip;
-use crate::rig::{MAX_ROWS, Rig};
+use crate::rig::{HostFrame, MAX_ROWS, Rig};
 use crate::strength::{Curve, Knobs};
 
 /// Filter states that the host steps.
@@ -75,6 +75,22 @@ pub fn play(pack: &Pack, rig: &Rig, source: &Clip, settings: &Settings) -> Resul
     })
 }
 
+/// Time of a clip by which a gate sees how it moves before it begins, s.
+const BEGINNING: f64 = 2.0;
+
+/// The frames of a clip's beginning, the last of them first.
+fn beginning(rig: &Rig, source: &Clip, translator: &HostTranslator) -> Vec<HostFrame> {
+    if !translator.is_gated() {
+        return Vec::new();
+    }
+    let frames = source.frames().min((BEGINNING / source.frame_time) as usize);
+    let mut frames = rig.read(&rig.poses(&source.slice(0..frames)));
+    frames.reverse();
+    // The first frame has no travel.
+    frames.pop();
+    frames
+}
+
 /// The same frame for frame, with what the learned timing and the gate say of each.
 pub fn play_on_clock(
     pack: &Pack,
@@ -89,10 +105,13 @@ pub fn play_on_clock(
     let mut clock = Vec::with_capacity(source.frames());
     let mut now = 0.0;
     let knobs = Knobs { controls: settings.controls, curve: settings.curve.clone() };
+    let before = beginning(rig, source, &translator);
     let styled = rig.play(source, |frame| {
         state.controls.strength = knobs.strength(clock.len(), source.frame_time);
         if clock.is_empty() {
             translator.start(&mut state, frame);
+            // What the clip does at its beginning it did before.
+            before.iter().for_each(|frame| translator.watch(&mut state, frame));
         }
         let timing = translator.step(&mut state, frame);
         familiar.push(state.familiar());

@@ -19,7 +19,7 @@ use kinesic_host::measure::turns::Turns;
 use kinesic_host::pack::{Baselines, PackFile, Provenance};
 use kinesic_host::rig::{MAX_JOINTS, Rig};
 use kinesic_host::translate::{
-    Alignment, Mirror, NamedPair, Settings, TrainOptions, TrainPair, evaluate, play, train,
+    Alignment, NamedPair, Settings, TrainOptions, TrainPair, evaluate, play, train,
 };
 use tally::{SEEN, Shown, Tally};
 
@@ -27,9 +27,6 @@ type Fallible<T> = Result<T, Box<dyn Error>>;
 
 /// Takes that teach, and takes that judge.
 const FOLDS: [[[usize; 2]; 2]; 2] = [[[1, 2], [3, 4]], [[3, 4], [1, 2]]];
-
-/// Actions of which one side was trained on, so that a mirror makes others.
-const ONE_SIDED: [usize; 3] = [1, 4, 6];
 
 fn main() -> Fallible<()> {
     let mut several = false;
@@ -66,9 +63,6 @@ fn main() -> Fallible<()> {
                 let learned = Learned::new(&clips, &options, actions, style, teach)?;
                 for action in actions {
                     learned.judge(&clips, [&judges, &strangers], [*action, style], judge, &mut tally)?;
-                }
-                for action in actions.iter().filter(|action| several && ONE_SIDED.contains(action)) {
-                    learned.judge_mirrored(&clips, [*action, style], judge, &mut tally)?;
                 }
             }
         }
@@ -143,34 +137,7 @@ impl<'a> Learned<'a> {
             NamedPair { source, target }
         });
         let report = evaluate(&pack, rig, &self.baselines, Some(&self.turns), &named)?;
-        tally.errors.extend(report.pairs.into_iter().map(|pair| (ACTIONS[action].to_owned(), pair.errors)));
-        Ok(())
-    }
-
-    /// How far it is from takes that a mirror makes other actions of.
-    fn judge_mirrored(
-        &self,
-        clips: &Clips,
-        [action, style]: [usize; 2],
-        judge: [usize; 2],
-        tally: &mut Tally,
-    ) -> Fallible<()> {
-        let (rig, pack) = (&self.rig, self.file.pack()?);
-        let mirror = Mirror::new(rig).ok_or("the skeleton has no mirror image")?;
-        let mirrored = |take: &Take| {
-            let poses = rig.restyle(&take.poses, |frame| {
-                let rows: Vec<f64> = frame.rows[..rig.rows()].as_flattened().iter().map(|x| f64::from(*x)).collect();
-                let image = mirror.rows(&rows);
-                frame.rows.as_flattened_mut().iter_mut().zip(&image).for_each(|(x, image)| *x = *image as f32);
-            });
-            rig.clip(&poses, 1.0 / FRAME_RATE)
-        };
-        for take in judge {
-            let [source, target] = [0, style].map(|style| mirrored(clips.take(action, style, take)));
-            let pair = NamedPair { source: ("source", &source), target: ("target", &target) };
-            let report = evaluate(&pack, rig, &self.baselines, Some(&self.turns), &[pair])?;
-            tally.errors.push((format!("{} in a mirror", ACTIONS[action]), report.errors));
-        }
+        tally.errors.extend(report.pairs.into_iter().map(|pair| (ACTIONS[action], pair.errors)));
         Ok(())
     }
 }

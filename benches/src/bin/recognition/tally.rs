@@ -35,7 +35,7 @@ pub struct Tally {
     /// By kind of features; of what was shown; of the wanted style; called so.
     called: [[[[usize; COUNT]; COUNT]; NAMES.len()]; SEEN],
     /// What was done, and how far from the target it came out.
-    pub errors: Vec<(String, Errors)>,
+    pub errors: Vec<(&'static str, Errors)>,
     /// Sums of squared deviations of rotations by style: of targets, of outputs.
     spread: [[f64; 2]; COUNT],
 }
@@ -82,7 +82,7 @@ impl Tally {
         println!("| action | outputs | source | offset | affine | **output** |\n|---|---|---|---|---|---|");
         let mut names: Vec<&str> = Vec::new();
         for (name, _) in &self.errors {
-            if !names.contains(&name.as_str()) {
+            if !names.contains(name) {
                 names.push(name);
             }
         }
@@ -98,23 +98,16 @@ impl Tally {
             println!("| {name} | {count} | {source:.2} | {offset:.2} | {affine:.2} | **{output:.2}** |");
         };
         for name in &names {
-            row(name, self.errors.iter().filter(|(of, _)| of == name).map(|(_, errors)| errors).collect());
+            row(name, self.errors.iter().filter(|(of, _)| *of == *name).map(|(_, errors)| errors).collect());
         }
-        for (name, in_a_mirror) in [("all", false), ("all in a mirror", true)] {
-            let of = self.errors.iter().filter(|(name, _)| name.ends_with("mirror") == in_a_mirror);
-            let errors: Vec<&Errors> = of.map(|(_, errors)| errors).collect();
-            if !errors.is_empty() {
-                row(name, errors);
-            }
-        }
+        row("all", self.errors.iter().map(|(_, errors)| errors).collect());
     }
 
     fn print_angles(&self) {
-        let plain = || self.errors.iter().filter(|(name, _)| !name.ends_with("mirror")).map(|(_, errors)| errors);
-        println!("\nMean angle to the target, degrees; mean of {} outputs\n", plain().count());
+        println!("\nMean angle to the target, degrees; mean of {} outputs\n", self.errors.len());
         println!("| joint | source | offset | affine | **output** |\n|---|---|---|---|---|");
         let of = |pick: fn(&Angles) -> Option<&Degrees>| {
-            Degrees::mean(plain().filter_map(|errors| pick(&errors.degrees)).collect::<Vec<_>>().into_iter())
+            Degrees::mean(self.errors.iter().filter_map(|(_, errors)| pick(&errors.degrees)).collect::<Vec<_>>().into_iter())
         };
         let columns =
             [of(|a| Some(&a.identity)), of(|a| a.offset.as_ref()), of(|a| a.affine.as_ref()), of(|a| Some(&a.error))];
