@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Prints the tables of docs/quality.md. About six minutes on two cores. Needs the real clips (KINESIC_DATA).
-# usage: docs/quality.sh [xia|swap|feet|child|people|recognition]...   (default: all)
+# usage: docs/quality.sh [xia|swap|feet|strange|child|people|recognition|several]...   (default: all)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 data=$(realpath "${KINESIC_DATA:-../shared/data}")
@@ -108,6 +108,41 @@ PYTHON
     done
 }
 
+# What walks taught, on what is no walk.
+strange_table() {
+    local clips=$data/xia styles=(angry childlike depressed old proud sexy strutting) style clip path
+    for style in "${styles[@]}"; do
+        "$kinesic" train translate --pair "$clips/neutral_01_000.bvh" "$clips/${style}_01_000.bvh" --out "$work/$style.kin" >/dev/null 2>&1
+    done
+    # A walk played backwards.
+    awk '/^Frame Time/ { print; motion = 1; next } !motion { print; next } NF { row[n++] = $0 } END { while (n) print row[--n] }' \
+        "$data/cmu31/07_01.bvh" >"$work/backwards.bvh"
+    echo
+    echo "Xia's walks on other motions, seven styles: unlike the training, travel, range of the wrist that moves more, jerk over the clip's"
+    echo
+    echo "| clip | unlike, % | travel, clip, m | least | most | wrist, least | most | jerk, mean | worst |"
+    echo "|---|---|---|---|---|---|---|---|---|"
+    for clip in m21/content/box-1 bandai2/wave-left-hand_normal_001 bandai2/wave-both-hands_normal_001 bandai1/punch_normal_001 \
+        bandai1/slash_normal_001 bandai1/bye_normal_001 bandai1/respond_normal_001 backwards cmu31/07_01; do
+        path=$data/$clip.bvh
+        [ $clip = backwards ] && path=$work/backwards.bvh
+        "$kinesic" apply "$work/angry.kin" "$path" --strength 0 --out "$work/before.positions.csv" >/dev/null 2>&1
+        : >"$work/all"
+        for style in "${styles[@]}"; do
+            "$kinesic" apply "$work/$style.kin" "$path" --out "$work/after.positions.csv" --json 2>/dev/null >"$work/one"
+            echo "$(python3 docs/strange.py "$work/before.positions.csv" "$work/after.positions.csv") $(python3 -c '
+import json, sys
+result = json.load(open(sys.argv[1]))
+print(result["unfamiliar_percent"], result["styled"]["jerk_m_s3"] / result["source"]["jerk_m_s3"])' "$work/one")" >>"$work/all"
+        done
+        awk -v clip="$clip" 'NR == 1 { near = far = $2; low = high = $3 }
+            { if ($2 < near) near = $2; if ($2 > far) far = $2; if ($3 < low) low = $3; if ($3 > high) high = $3
+              unlike += $4; jerk += $5; if ($5 > rough) rough = $5 }
+            END { printf "| %s | %.0f | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f |\n",
+                clip, unlike / NR, $1, near, far, low, high, jerk / NR, rough }' "$work/all"
+    done
+}
+
 # child PERSON: trained on everybody else
 child() {
     local table=(--pairs "$data/pairs.tsv" --where style=child)
@@ -168,15 +203,17 @@ people_table() {
         END { printf "| **mean** | %.2f | %.2f | %.2f | %.2f | |\n", sum[1], sum[2], sum[3], sum[4] }' "$work/all"
 }
 
-for part in "${@:-xia swap feet child people recognition}"; do
+for part in "${@:-xia swap feet strange child people recognition several}"; do
     for table in $part; do
         case $table in
         xia) xia 000 001 ;;
         swap) xia 001 000 ;;
         feet) feet_table ;;
+        strange) strange_table ;;
         child) child_table ;;
         people) people_table ;;
         recognition) KINESIC_DATA=$data cargo run --release --locked -q -p kinesic-benches --bin recognition ;;
+        several) KINESIC_DATA=$data cargo run --release --locked -q -p kinesic-benches --bin recognition -- several ;;
         *) echo "no table $table" >&2; exit 2 ;;
         esac
     done

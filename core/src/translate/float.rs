@@ -29,12 +29,7 @@ struct TimingHead<'a> {
 }
 
 impl<'a> Float<'a> {
-    pub fn load(
-        pack: &Pack<'a>,
-        meta: &TranslatorMeta,
-        gate: Option<&Gate>,
-        rows: usize,
-    ) -> Result<Self, LoadError> {
+    pub fn load(pack: &Pack<'a>, meta: &TranslatorMeta, gate: Option<&Gate>, rows: usize) -> Result<Self, LoadError> {
         let bank = Bank::load(pack, meta, rows)?;
         let timing_states = match meta.form {
             Form::WholeBody => 2 * meta.blocks as usize + meta.drives as usize,

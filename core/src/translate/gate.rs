@@ -94,7 +94,9 @@ impl<'a> Gate<'a> {
     pub fn look(&self, input: &[[f32; 3]], memory: &mut [f32]) -> Sight {
         let mut features = [0.0; FEATURES];
         self.project.multiply_add(input.as_flattened(), &mut features);
-        let Some(([started, novelty], memory)) = memory.split_first_chunk_mut::<HEAD>() else { return Sight::EVERYTHING };
+        let Some(([started, novelty], memory)) = memory.split_first_chunk_mut::<HEAD>() else {
+            return Sight::EVERYTHING;
+        };
         let own = memory.as_chunks_mut::<MEMORY>().0;
         let [feature_rate, speed_rate, novelty_rate, inverse] = self.rates;
         let first = *started == 0.0;
@@ -117,10 +119,7 @@ impl<'a> Gate<'a> {
         let [of_first, of_second] = [(c - a) * (c - a), (c - b) * (c - b)];
         let sum = of_first + of_second;
         let part = if sum > 0.0 && sum.is_finite() { of_first / sum } else { 0.5 };
-        Sight {
-            familiar: 1.0 / (1.0 + fourth * fourth),
-            near: [(first_near, part), (second_near, 1.0 - part)],
-        }
+        Sight { familiar: 1.0 / (1.0 + fourth * fourth), near: [(first_near, part), (second_near, 1.0 - part)] }
     }
 
     /// Squared distances and numbers of the three nearest clusters, the nearest first.

@@ -30,7 +30,10 @@ impl<const ROWS: usize, const STATES: usize> TranslatorState<ROWS, STATES> {
     /// The filters as f32 or i32, and the gate's words, for a model with so many filters.
     pub(super) fn parts<T: bytemuck::Pod>(&mut self, filters: usize) -> (&mut [T], &mut [f32]) {
         let (filters, gate) = self.filters.split_at_mut_checked(filters).unwrap_or_default();
-        (bytemuck::try_cast_slice_mut(filters).unwrap_or_default(), bytemuck::try_cast_slice_mut(gate).unwrap_or_default())
+        (
+            bytemuck::try_cast_slice_mut(filters).unwrap_or_default(),
+            bytemuck::try_cast_slice_mut(gate).unwrap_or_default(),
+        )
     }
 
     /// Forgets the past, keeps what the user may turn.

@@ -28,6 +28,10 @@ pub enum QuantiseError {
     /// The pack does not load.
     #[error(transparent)]
     Load(#[from] LoadError),
+    /// A translator of several actions.
+    #[error("the pack holds experts for several actions, which have no int16 form")]
+    #[diagnostic(help("keep the f32 pack, or train one action, or train with --no-gate"))]
+    Experts,
     /// Nothing in it has an int8 form.
     #[error("the pack holds no body mechanics: found {found}")]
     #[diagnostic(help(

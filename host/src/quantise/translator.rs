@@ -41,6 +41,9 @@ pub fn to_int16(file: &PackFile, provenance: &Provenance) -> Result<Vec<u8>, Qua
     if pack.number("translate/direct")? == TensorType::I16 {
         return Err(QuantiseError::Done { number: "int16" });
     }
+    if pack.number("translate/expert_bias").is_ok() {
+        return Err(QuantiseError::Experts);
+    }
     let rows = Rig::load(&pack)?.rows();
     let mut out = PackWriter::new(pack.kind(), metadata.name, metadata.frame_rate);
     metadata.joints.iter().for_each(|joint| out.joint(joint.name, joint.parent));
@@ -48,7 +51,9 @@ pub fn to_int16(file: &PackFile, provenance: &Provenance) -> Result<Vec<u8>, Qua
     const KEPT: [&str; 4] =
         ["translate/mean", "translate/inverse_deviation", "translate/timing", "translate/blocks_per_joint"];
     for tensor in metadata.tensors.iter() {
-        if !tensor.name.starts_with("translate/") || KEPT.contains(&tensor.name) {
+        // The gate is a small part, and its distances want the range of floats.
+        let kept = KEPT.contains(&tensor.name) || tensor.name.starts_with("translate/gate_");
+        if kept || !tensor.name.starts_with("translate/") {
             out.copy(&tensor, pack.bytes(&tensor).ok_or(LoadError::Metadata)?);
         }
     }

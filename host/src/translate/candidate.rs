@@ -27,8 +27,14 @@ pub const JUDGE: Candidate = Candidate { poles: Poles::Static, ..QUICK };
 pub const MACHINE_JUDGE: Candidate = Candidate { poles: Poles::Identified(24), ..QUICK };
 
 /// The static affine map of each joint: the baseline, as a candidate.
-pub const AFFINE: Candidate =
-    Candidate { coordinates: None, poles: Poles::Static, base: Base::Joint, penalty: 1e6, dynamic_penalty: 1e6, experts: false };
+pub const AFFINE: Candidate = Candidate {
+    coordinates: None,
+    poles: Poles::Static,
+    base: Base::Joint,
+    penalty: 1e6,
+    dynamic_penalty: 1e6,
+    experts: false,
+};
 
 /// Small whole-body model that refines alignments.
 pub const QUICK: Candidate = Candidate {

@@ -92,12 +92,7 @@ fn beginning(rig: &Rig, source: &Clip, translator: &HostTranslator) -> Vec<HostF
 }
 
 /// The same frame for frame, with what the learned timing and the gate say of each.
-pub fn play_on_clock(
-    pack: &Pack,
-    rig: &Rig,
-    source: &Clip,
-    settings: &Settings,
-) -> Result<Played, LoadError> {
+pub fn play_on_clock(pack: &Pack, rig: &Rig, source: &Clip, settings: &Settings) -> Result<Played, LoadError> {
     let translator = HostTranslator::load(pack)?;
     let mut state = Box::new(TranslatorState::new());
     (state.controls, state.fade) = (settings.controls, settings.fade);

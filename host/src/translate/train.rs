@@ -61,7 +61,7 @@ const MARGIN: f64 = 0.03;
 /// Part of the whole-body form's error that the per-joint form may have to replace it: on another take it loses more.
 const PER_JOINT: f64 = 0.9;
 /// Part of a plain model's error that a model of several actions may have to replace it: it is larger.
-const SEVERAL: f64 = 0.9;
+const SEVERAL: f64 = 0.97;
 /// Factor by which a warp of a machine's clips must be better than one even clock: it leaves out a part of every reaction.
 const ONE_CLOCK: f64 = 1.5;
 /// Times that the styled clip is aligned anew with what the model makes of the source.
@@ -271,20 +271,16 @@ fn several(problem: &Problem, plain: &Candidate, options: &TrainOptions, cache: 
     let gate = problem.actions()?;
     let limit = options.order.unwrap_or(WHOLE_BODY_ORDER);
     let mut grid = Vec::new();
-    for coordinates in [8, 12] {
-        for penalty in [1e-3, 3e-3, 1e-2, 1e-1] {
-            let poles = Poles::Relaxation;
-            if poles.states(coordinates) <= limit {
-                grid.push(Candidate {
-                    coordinates: Some(coordinates),
-                    poles,
-                    base: Base::Identity,
-                    penalty,
-                    dynamic_penalty: penalty,
-                    experts: true,
-                });
-            }
-        }
+    for (coordinates, poles) in [(8, Poles::Relaxation), (12, Poles::Relaxation), (12, Poles::Harmonics2)] {
+        let penalties: &[f64] = if poles.states(coordinates) <= limit { &[1e-3, 3e-3, 1e-2, 3e-2, 0.1] } else { &[] };
+        grid.extend(penalties.iter().map(|penalty| Candidate {
+            coordinates: Some(coordinates),
+            poles,
+            base: Base::Identity,
+            penalty: *penalty,
+            dynamic_penalty: *penalty,
+            experts: true,
+        }));
     }
     let plain = problem.validate(&[*plain], cache, "by take")[0];
     let errors = cache.always("experts", || problem.validate_experts(&grid, &gate));

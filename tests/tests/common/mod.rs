@@ -33,7 +33,8 @@ pub fn trained(form: FormChoice, order: usize) -> Trained {
     };
     // The alignment of the golden packs.
     let alignment = Some(Alignment::Warp);
-    let options = TrainOptions { form, order: Some(order), mirror: Some(false), alignment };
+    // Nor have they a gate.
+    let options = TrainOptions { form, order: Some(order), mirror: Some(false), alignment, gate: false };
     train(&rig, &[pair], "weary", FPS, &options, &|_| {}).unwrap()
 }
 

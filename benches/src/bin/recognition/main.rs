@@ -18,9 +18,7 @@ use kinesic::Pose;
 use kinesic_host::measure::turns::Turns;
 use kinesic_host::pack::{Baselines, PackFile, Provenance};
 use kinesic_host::rig::{MAX_JOINTS, Rig};
-use kinesic_host::translate::{
-    Alignment, NamedPair, Settings, TrainOptions, TrainPair, evaluate, play, train,
-};
+use kinesic_host::translate::{Alignment, NamedPair, Settings, TrainOptions, TrainPair, evaluate, play, train};
 use tally::{SEEN, Shown, Tally};
 
 type Fallible<T> = Result<T, Box<dyn Error>>;
@@ -90,10 +88,8 @@ impl<'a> Learned<'a> {
         teach: [usize; 2],
     ) -> Fallible<Self> {
         let pair = |action, take| [0, style].map(|style| clips.take(action, style, take));
-        let taught: Vec<(usize, Vec<[&Take; 2]>)> = actions
-            .iter()
-            .map(|action| (*action, teach.iter().map(|take| pair(*action, *take)).collect()))
-            .collect();
+        let taught: Vec<(usize, Vec<[&Take; 2]>)> =
+            actions.iter().map(|action| (*action, teach.iter().map(|take| pair(*action, *take)).collect())).collect();
         let all = || taught.iter().flat_map(|(_, pairs)| pairs.iter().copied());
         let rig = clips.rig.centred(&all().flatten().map(|take| take.poses.as_slice()).collect::<Vec<_>>());
         let train_pair = |[source, target]: [&Take; 2]| TrainPair {

@@ -107,7 +107,9 @@ impl Tally {
         println!("\nMean angle to the target, degrees; mean of {} outputs\n", self.errors.len());
         println!("| joint | source | offset | affine | **output** |\n|---|---|---|---|---|");
         let of = |pick: fn(&Angles) -> Option<&Degrees>| {
-            Degrees::mean(self.errors.iter().filter_map(|(_, errors)| pick(&errors.degrees)).collect::<Vec<_>>().into_iter())
+            Degrees::mean(
+                self.errors.iter().filter_map(|(_, errors)| pick(&errors.degrees)).collect::<Vec<_>>().into_iter(),
+            )
         };
         let columns =
             [of(|a| Some(&a.identity)), of(|a| a.offset.as_ref()), of(|a| a.affine.as_ref()), of(|a| Some(&a.error))];

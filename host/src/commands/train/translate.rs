@@ -10,8 +10,8 @@ use kinesic_host::pack::{Metric, PackFile};
 use kinesic_host::prepare::{Source, common_rate};
 use kinesic_host::step_cache::StepCache;
 use kinesic_host::translate::{
-    AFFINE, Alignment, Base, Candidate, Errors, FormChoice, NamedPair, OPEN, Poles, Report, Stage, TrainOptions, TrainPair,
-    Trained, evaluate, plausible, train_kept,
+    AFFINE, Alignment, Base, Candidate, Errors, FormChoice, NamedPair, OPEN, Poles, Report, Stage, TrainOptions,
+    TrainPair, Trained, evaluate, plausible, train_kept,
 };
 use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
