@@ -108,3 +108,81 @@ fn unit_vector(v: Vector3<f32>) -> Option<Vector3<f32>> {
 pub(super) fn norm(v: Vector3<f32>) -> f32 {
     sqrt(v.dot(&v))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LEG: Leg = Leg { hip: 1, knee: 2, ankle: 3, joint: 4, tip: Vector3::new(0.0, 0.0, 0.0) };
+    const PARENTS: [u16; 5] = [0, 0, 1, 2, 3];
+    const OFFSETS: [[f32; 3]; 5] =
+        [[0.0; 3], [0.1, -0.05, 0.0], [0.0, -0.42, 0.0], [0.0, -0.41, 0.0], [0.0, -0.06, 0.14]];
+
+    fn skeleton() -> Skeleton<'static> {
+        Skeleton::new(&PARENTS, &OFFSETS, &[], &[]).unwrap()
+    }
+
+    fn bent(knee: f32) -> Pose<5> {
+        let mut pose = Pose::identity();
+        pose.rotations[0] = UnitQuaternion::from_euler_angles(0.1, 0.7, -0.05);
+        pose.rotations[1] = UnitQuaternion::from_euler_angles(-0.3 - 0.5 * knee, 0.1, 0.05);
+        pose.rotations[2] = UnitQuaternion::from_euler_angles(knee, 0.0, 0.0);
+        pose.rotations[3] = UnitQuaternion::from_euler_angles(0.2, -0.1, 0.0);
+        pose
+    }
+
+    fn at(pose: &Pose<5>, joint: u16) -> Vector3<f32> {
+        skeleton().point(pose, joint, Vector3::zeros())
+    }
+
+    fn moved(from: &Pose<5>, way: Vector3<f32>) -> Pose<5> {
+        let (mut pose, mut axis) = (*from, Vector3::zeros());
+        let bones = Bones::of(&skeleton(), &LEG, from);
+        bones.learn(&mut axis);
+        bones.reach(&skeleton(), &LEG, &axis, way, &mut pose);
+        pose
+    }
+
+    #[test]
+    fn the_foot_arrives_and_keeps_its_rotation_and_the_hip_stays() {
+        for knee in [0.6, 1.0, 1.6] {
+            let from = bent(knee);
+            for way in [Vector3::new(0.02, 0.03, -0.05), Vector3::new(-0.04, 0.0, 0.06), Vector3::new(0.0, 0.08, 0.0)] {
+                let to = moved(&from, way);
+                for joint in [3, 4] {
+                    assert!((at(&to, joint) - at(&from, joint) - way).norm() < 2e-3, "{knee}: {way}");
+                }
+                assert_eq!([at(&to, 1), to.root], [at(&from, 1), from.root]);
+                let [was, is] = [&from, &to].map(|pose| skeleton().turned(pose, 3));
+                assert!(was.angle_to(&is) < 1e-3);
+            }
+        }
+    }
+
+    #[test]
+    fn a_place_out_of_reach_is_aimed_at_and_the_knee_does_not_snap() {
+        let from = bent(0.4);
+        let to = moved(&from, Vector3::new(0.0, -3.0, 0.0));
+        let reached = (at(&to, 3) - at(&to, 1)).norm();
+        assert!((0.82..0.83).contains(&reached), "{reached}");
+        // A leg that is straight already: a small way moves it a little.
+        let straight = bent(0.0);
+        let little = moved(&straight, Vector3::new(0.0, 0.001, 0.0));
+        assert!((at(&little, 2) - at(&straight, 2)).norm() < 0.03);
+        // No way is no change, to rounding.
+        let same = moved(&from, Vector3::zeros());
+        assert!((1..4).all(|joint| same.rotations[joint].angle_to(&from.rotations[joint]) < 1e-3));
+    }
+
+    #[test]
+    fn whatever_the_way_rotations_stay_rotations() {
+        for knee in [-1.0, 0.0, 1.0, 3.0] {
+            for way in [0.0, 1e-30, 1e-3, 0.4, 0.83, 1e3, 1e6] {
+                for way in [Vector3::new(way, 0.0, 0.0), Vector3::new(0.0, way, -way), Vector3::new(-way, -way, way)] {
+                    let to = moved(&bent(knee), way);
+                    assert!(to.is_sound(5), "{knee}: {way}: {to:?}");
+                }
+            }
+        }
+    }
+}

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use super::leg::norm;
 use crate::mechanics::Thresholds;
 use crate::model::{LoadError, Pack};
 use crate::pose::{Pose, Skeleton, is_number};
@@ -59,26 +60,16 @@ impl<'a> Feet<'a> {
                 }
             }
             let joint = if toe != NONE && skeleton.is_above(ankle, toe) { toe } else { ankle };
-            let tip = ends.get(usize::from(joint)).filter(|_| joint == ankle).map_or_else(Vector3::zeros, |tip| Vector3::from(*tip));
+            let tip = ends
+                .get(usize::from(joint))
+                .filter(|_| joint == ankle)
+                .map_or_else(Vector3::zeros, |tip| Vector3::from(*tip));
             Ok(Leg { hip, knee, ankle, joint, tip })
         };
         let legs = [leg(LEFT_HIP)?, leg(LEFT_HIP + 4)?];
         let mut length = 0.0;
-        for Leg { hip, knee, ankle, joint, tip } in legs {
-            let pose = Pose::<0>::identity();
-            let at = |joint| skeleton.point(&pose, joint, Vector3::zeros());
-            let bones = [at(knee) - at(hip), at(ankle) - at(knee)];
-            // Beyond that squares are no numbers any more.
-            if !skeleton.point(&pose, joint, tip).iter().all(|x| is_number(*x)) {
-                return Err(LoadError::Value { tensor: "skeleton/offsets", index: usize::from(joint) });
-            }
-            for (bone, joint) in bones.into_iter().zip([knee, ankle]) {
-                let bone = bone.norm();
-                if !(1e-2..1e2).contains(&bone) {
-                    return Err(LoadError::Value { tensor: "skeleton/offsets", index: usize::from(joint) });
-                }
-                length += 0.5 * bone;
-            }
+        for leg in &legs {
+            length += 0.5 * length_of(&skeleton, leg)?;
         }
         Self::sized(skeleton, legs, length / ADULT, pack.metadata().frame_rate)
     }
@@ -99,4 +90,23 @@ impl<'a> Feet<'a> {
         };
         Ok(Self { skeleton, legs, size, frame_time: 1.0 / frame_rate, thresholds, reach: REACH })
     }
+}
+
+/// Length of a leg, m. Far joints have no squares, and a leg of no length has no direction.
+fn length_of(skeleton: &Skeleton, leg: &Leg) -> Result<f32, LoadError> {
+    let refused = |joint| LoadError::Value { tensor: "skeleton/offsets", index: usize::from(joint) };
+    let mut near = leg.tip.iter().all(|x| is_number(*x));
+    skeleton.ancestors(leg.joint, |_, offset| near &= offset.iter().all(|x| is_number(*x)));
+    if !near {
+        return Err(refused(leg.joint));
+    }
+    let pose = Pose::<0>::identity();
+    let [hip, knee, ankle] = [leg.hip, leg.knee, leg.ankle].map(|joint| skeleton.point(&pose, joint, Vector3::zeros()));
+    let [thigh, shin] = [norm(knee - hip), norm(ankle - knee)];
+    for (bone, joint) in [(thigh, leg.knee), (shin, leg.ankle)] {
+        if !(1e-2..1e2).contains(&bone) {
+            return Err(refused(joint));
+        }
+    }
+    Ok(thigh + shin)
 }

@@ -10,6 +10,8 @@ use crate::mechanics::contact;
 use crate::pose::{Pose, is_number};
 use crate::rig::carried;
 
+/// Both points of a foot are one, which touches the ground.
+const CLEARANCE: [[f32; 2]; 2] = [[0.0; 2]; 2];
 /// A root that goes farther in a frame, m, was put elsewhere.
 const LEAP: f32 = 0.5;
 /// Time over which a foot is taken hold of, and let go, s.
@@ -22,8 +24,14 @@ const FOLLOWS: f32 = 0.05;
 const FLIES: f32 = 0.5;
 /// Part of what the legs are bent by that the root takes over, 1/s.
 const RELIEVES: f32 = 2.0;
+/// Time constant of the slow way of a foot that stands, s: a source that slides takes the result along, one that shakes does not.
+const SLOWLY: f32 = 0.2;
+/// Time constant of the height at which a foot is held, s.
+const SETTLES: f32 = 0.03;
 /// Greatest speed at which the root is carried, m/s of an adult.
 const FASTEST: f32 = 2.0;
+/// Greatest speed at which the way of a foot changes, m/s of an adult: a source that jumps is not followed.
+const HASTY: f32 = 1.0;
 /// Greatest way by which a foot is moved, m of an adult.
 const FARTHEST: f32 = 0.2;
 /// Way of a foot that is noticed, m: less is rounding, and a straight knee would change sides for it.
@@ -47,6 +55,8 @@ impl Feet<'_> {
         }
         if let Some(source) = source.filter(|source| source.is_sound(joints)) {
             self.follow(state, source, out);
+        } else {
+            state.gap = state.gap.saturating_add(1);
         }
         let [x, z] = state.shift;
         let root = [out.root.x + x, out.root.z + z];
@@ -64,40 +74,64 @@ impl Feet<'_> {
 
     /// Which feet stand, where the root goes, and how far each foot is moved.
     fn follow<const JOINTS: usize>(&self, state: &mut FeetState, source: &Pose<JOINTS>, out: &Pose<JOINTS>) {
-        let from = self.legs.map(|leg| self.skeleton.point(source, leg.joint, leg.tip));
-        let to = self.legs.map(|leg| self.skeleton.point(out, leg.joint, leg.tip));
-        let points = from.map(|point| [point + source.root; 2]);
-        let carried_by = out.root - source.root;
-        let clearance = [[0.0; 2]; 2];
-        let way = source.root - state.root;
-        let leaps = !state.started || way.x * way.x + way.z * way.z > LEAP * LEAP;
-        if leaps {
-            contact::start(&mut state.source, &points, &clearance, &self.thresholds);
-        } else {
-            contact::advance(&mut state.source, &points, &clearance, &self.thresholds, self.frame_time);
-        }
-        (state.root, state.started) = (source.root, true);
-
-        // Where each foot came against the source's, and what it slipped since the last frame.
-        let [left, right] = [from, to];
+        let from = self.legs.map(|leg| source.root + self.skeleton.point(source, leg.joint, leg.tip));
+        let to = self.legs.map(|leg| out.root + self.skeleton.point(out, leg.joint, leg.tip));
+        let by = [out.root.x - source.root.x, out.root.z - source.root.z];
+        let gap = state.gap > 0;
+        let leaps = self.watch(state, &source.root, &from);
+        // Nothing is known of how a foot came here.
+        let new = leaps || gap;
         let mut slips = [Vector3::zeros(); 2];
-        for ((slip, held), (from, to)) in slips.iter_mut().zip(&mut state.held).zip(left.iter().zip(&right)) {
-            let now = to - from + carried_by;
-            *slip = if leaps { Vector3::zeros() } else { now - held.before };
-            held.before = now;
+        let feet = state.held.iter_mut().zip(&state.source).zip(from.into_iter().zip(to));
+        for (slip, ((held, foot), (from, to))) in slips.iter_mut().zip(feet) {
+            let [from_before, to_before] = core::mem::replace(&mut held.before, [from, to]);
+            // What the style leaves alone is the source's, bit for bit.
+            let stands = foot.stands() && (to != from || by != [0.0; 2]);
+            if stands {
+                // The observer's ground is another one as soon as the foot lifts.
+                held.ground += (foot.ground() - held.ground) * if held.weight > 0.0 { self.part(SETTLES) } else { 1.0 };
+            }
+            if new || !stands {
+                held.slow = Vector3::zeros();
+            } else {
+                held.slow += (from - from_before - held.slow) * self.part(SLOWLY);
+            }
+            if !new {
+                *slip = to - to_before - held.slow;
+            }
+            let time = if stands { self.part(TAKES) } else { -self.part(LEAVES) };
+            held.weight = (held.weight + time).clamp(0.0, 1.0);
         }
-        for (foot, held) in state.source.iter().zip(&mut state.held) {
-            let time = if foot.stands() { self.frame_time / TAKES } else { -self.frame_time / LEAVES };
-            held.weight = (held.weight + time).max(0.0).min(1.0);
-        }
-        let step = self.carry(state, &slips, [carried_by.x, carried_by.z]);
-        for (((held, slip), foot), to) in state.held.iter_mut().zip(&slips).zip(&state.source).zip(&right) {
-            self.hold(held, *slip, step, foot.ground() - (to.y + out.root.y));
+        let step = self.carry(state, &slips, by, leaps);
+        let [left, right] = &state.source;
+        let floor = left.ground().min(right.ground());
+        for (held, slip) in state.held.iter_mut().zip(&slips) {
+            self.hold(held, *slip, step, floor);
         }
     }
 
+    /// Which feet of the source stand. True where it was put elsewhere.
+    fn watch(&self, state: &mut FeetState, root: &Vector3<f32>, from: &[Vector3<f32>; 2]) -> bool {
+        let points = from.map(|point| [point; 2]);
+        let way = root - state.root;
+        let leaps = !state.started || way.x * way.x + way.z * way.z > LEAP * LEAP;
+        if leaps {
+            contact::start(&mut state.source, &points, &CLEARANCE, &self.thresholds);
+        } else {
+            let elapsed = self.frame_time * (1.0 + f32::from(state.gap));
+            contact::advance(&mut state.source, &points, &CLEARANCE, &self.thresholds, elapsed);
+        }
+        (state.root, state.started, state.gap) = (*root, true, 0);
+        leaps
+    }
+
+    /// Part of a change that a frame makes, with a time constant in s.
+    fn part(&self, time: f32) -> f32 {
+        (self.frame_time / time).min(1.0)
+    }
+
     /// Carries the root as the feet that stand want it; the step, m.
-    fn carry(&self, state: &mut FeetState, slips: &[Vector3<f32>; 2], by: [f32; 2]) -> [f32; 2] {
+    fn carry(&self, state: &mut FeetState, slips: &[Vector3<f32>; 2], by: [f32; 2], leaps: bool) -> [f32; 2] {
         let (mut sum, mut wanted, mut left) = (0.0, [0.0; 2], [0.0; 2]);
         for (held, slip) in state.held.iter().zip(slips) {
             let weight = smooth(held.weight);
@@ -111,41 +145,49 @@ impl Feet<'_> {
         }
         let share = if sum > 0.0 { 1.0 / sum } else { 0.0 };
         let stands = sum.min(1.0);
-        let follow = (self.frame_time * stands / FOLLOWS).min(1.0);
-        let fade = (self.frame_time * (1.0 - stands) / FLIES).min(1.0);
+        let (follow, fade) = (self.part(FOLLOWS) * stands, self.part(FLIES) * (1.0 - stands));
         let mut speed = [0.0; 2];
-        for ((speed, own), (wanted, left)) in
-            speed.iter_mut().zip(&mut state.speed).zip(wanted.iter().zip(&left))
-        {
+        for ((speed, own), (wanted, left)) in speed.iter_mut().zip(&mut state.speed).zip(wanted.iter().zip(&left)) {
             *own += (wanted * share / self.frame_time - *own) * follow - *own * fade;
             *speed = *own + RELIEVES * left * share * stands;
         }
         let [x, z] = speed;
         let (fast, most) = (sqrt(x * x + z * z), FASTEST * self.size);
         let time = self.frame_time * if fast > most { most / fast } else { 1.0 };
-        let ([shift_x, shift_z], [by_x, by_z]) = (state.shift, by);
-        let at = [by_x + shift_x, by_z + shift_z];
+        let at = self.within(state, by, leaps);
         let [to_x, to_z] = carried(at, [x * time, z * time], self.reach);
-        let step = [to_x - (by_x + shift_x), to_z - (by_z + shift_z)];
-        let [step_x, step_z] = step;
-        state.shift = [shift_x + step_x, shift_z + step_z];
-        step
+        let ([by_x, by_z], [shift_x, shift_z]) = (by, state.shift);
+        let shift = [to_x - by_x, to_z - by_z];
+        (state.by, state.shift) = (by, shift);
+        let [x, z] = shift;
+        [x - shift_x, z - shift_z]
     }
 
-    /// Moves a foot by what it slips while it is held, and lets it return while it is not. `sunk` is how far it is under the ground of the
-    /// source's foot.
-    fn hold(&self, held: &mut Held, slip: Vector3<f32>, [step_x, step_z]: [f32; 2], sunk: f32) {
+    /// Where the root is against the source's once the pipeline has put it elsewhere: within the reach, or not farther than there.
+    fn within(&self, state: &FeetState, by: [f32; 2], leaps: bool) -> [f32; 2] {
+        let ([x, z], [before_x, before_z], [shift_x, shift_z]) = (by, state.by, state.shift);
+        if leaps {
+            return [x + shift_x, z + shift_z];
+        }
+        let before = [before_x + shift_x, before_z + shift_z];
+        carried(before, [x - before_x, z - before_z], self.reach.max(sqrt(x * x + z * z)))
+    }
+
+    /// Moves a foot by what it slips while it is held, and lets it return while it is not. It is held on the ground, and never under both the
+    /// floor and the foot of the source.
+    fn hold(&self, held: &mut Held, slip: Vector3<f32>, [step_x, step_z]: [f32; 2], floor: f32) {
         let weight = smooth(held.weight);
-        let returns = (1.0 - weight) * (self.frame_time / RETURNS).min(1.0);
+        let returns = (1.0 - weight) * self.part(RETURNS);
         let (x, z) = (held.way.x, held.way.z);
-        let [x, z] = [
-            x - weight * (slip.x + step_x) - returns * x,
-            z - weight * (slip.z + step_z) - returns * z,
-        ];
+        let [x, z] = [x - weight * (slip.x + step_x) - returns * x, z - weight * (slip.z + step_z) - returns * z];
         let (far, most) = (sqrt(x * x + z * z), FARTHEST * self.size);
         let share = if far > most { most / far } else { 1.0 };
-        let height = (-weight * held.before.y).max(sunk.min(-held.before.y));
-        held.way = Vector3::new(x * share, height.max(-most).min(most), z * share);
+        let [from, to] = held.before.map(|foot| foot.y);
+        let height = (weight * (held.ground - to)).max(floor.min(from) - to);
+        let way = Vector3::new(x * share, height.max(-most).min(most), z * share);
+        let (change, most) = (way - held.way, HASTY * self.size * self.frame_time);
+        let fast = norm(change);
+        held.way += if fast > most { change * (most / fast) } else { change };
     }
 }
 

@@ -129,11 +129,7 @@ impl<const ROWS: usize, A: Axis> LimiterOf<'_, ROWS, A> {
 }
 
 /// What of a way would lead out of the [reach](Frame::reach), world, m. The target goes the rest.
-fn lost<const ROWS: usize, A>(
-    state: &mut LimitStateOf<ROWS, A>,
-    frame: &Frame<ROWS>,
-    way: Vector3<f32>,
-) -> [f32; 2] {
+fn lost<const ROWS: usize, A>(state: &mut LimitStateOf<ROWS, A>, frame: &Frame<ROWS>, way: Vector3<f32>) -> [f32; 2] {
     let ([x, z], [aim_x, aim_z]) = (frame.ground, state.aim);
     let by = state.ground.map_or([0.0; 2], |[from_x, from_z]| [way.x - (x - from_x), way.z - (z - from_z)]);
     (state.ground, state.aim) = (Some(frame.ground), carried(state.aim, by, frame.reach));

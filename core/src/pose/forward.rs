@@ -66,7 +66,7 @@ impl Skeleton<'_> {
     }
 
     /// A joint and those above it, each with the way to it from its parent; the root's is none.
-    fn ancestors(&self, joint: u16, mut visit: impl FnMut(usize, Vector3<f32>)) {
+    pub(crate) fn ancestors(&self, joint: u16, mut visit: impl FnMut(usize, Vector3<f32>)) {
         let mut joint = usize::from(joint);
         while let (1.., Some(parent), Some(offset)) = (joint, self.parents.get(joint), self.offsets.get(joint)) {
             visit(joint, Vector3::from(*offset));

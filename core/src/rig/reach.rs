@@ -4,7 +4,7 @@ use crate::kernel::sqrt;
 use crate::pose::FARTHEST;
 
 /// How far a body is carried from where its source stands unless something else is asked for, m.
-pub const REACH: f32 = 2.0;
+pub const REACH: f32 = 4.0;
 
 /// Part of the reach that is felt by nothing.
 const FREE: f32 = 0.5;
