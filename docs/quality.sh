@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Prints the tables of docs/quality.md. About six minutes on two cores. Needs the real clips (KINESIC_DATA).
-# usage: docs/quality.sh [xia|swap|feet|strange|child|people|recognition|several]...   (default: all)
+# usage: docs/quality.sh [xia|swap|feet|live|strange|child|people|recognition|several]...   (default: all)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 data=$(realpath "${KINESIC_DATA:-../shared/data}")
@@ -75,22 +75,25 @@ xia() {
         }' "$work/all"
 }
 
+# feet_table SKELETON FEET...
 feet_table() {
+    local on=$1
+    shift
     local clips=$data/xia styles=(angry childlike depressed old proud sexy strutting) style clip feet strength
     for style in "${styles[@]}"; do
         "$kinesic" train translate --pair "$clips/neutral_01_000.bvh" "$clips/${style}_01_000.bvh" --out "$work/$style.kin" --json >"$work/train"
     done
     echo
-    echo "Feet: xia's styles on other walks, strengths .5 and 1; mean and worst of 14 results"
+    echo "Feet: xia's styles on other walks, on the skeleton of the $on, strengths .5 and 1; mean and worst of 14 results"
     echo
     echo "| clip | feet | in step, mean | worst | slide, mean | worst | jerk, mean | worst |"
     echo "|---|---|---|---|---|---|---|---|"
     for clip in cmu31/07_01 cmu31/08_01 cmu31/35_01 m21/style/DEPRESSED m21/style/STRUTTING-1; do
-        for feet in lock free; do
+        for feet in "$@"; do
             : >"$work/all"
             for style in "${styles[@]}"; do
                 for strength in 0.5 1; do
-                    "$kinesic" apply "$work/$style.kin" "$data/$clip.bvh" --out "$work/out.bvh" --strength $strength --feet $feet --json \
+                    "$kinesic" apply "$work/$style.kin" "$data/$clip.bvh" --out "$work/out.bvh" --strength $strength --on "$on" --feet $feet --json \
                         2>/dev/null >"$work/one"
                     python3 - "$work/one" >>"$work/all" <<'PYTHON'
 import json, sys
@@ -203,12 +206,13 @@ people_table() {
         END { printf "| **mean** | %.2f | %.2f | %.2f | %.2f | |\n", sum[1], sum[2], sum[3], sum[4] }' "$work/all"
 }
 
-for part in "${@:-xia swap feet strange child people recognition several}"; do
+for part in "${@:-xia swap feet live strange child people recognition several}"; do
     for table in $part; do
         case $table in
         xia) xia 000 001 ;;
         swap) xia 001 000 ;;
-        feet) feet_table ;;
+        feet) feet_table clip lock free ;;
+        live) feet_table pack lock live free ;;
         strange) strange_table ;;
         child) child_table ;;
         people) people_table ;;

@@ -115,6 +115,17 @@ pub unsafe extern "C" fn kinesic_pipeline_coordinates(model: *const KinesicPipel
     unsafe { storage::get::<_, Playing<Engine>>(model) }.map_or(0, |model| model.rig().coordinates())
 }
 
+/// How far the body may be carried over the ground from where the source stands, m: changed steps make another way, which counts in full up to
+/// half the reach and then ever less. A loaded model has 4; infinity is as far as it gets.
+///
+/// # Safety
+/// `model` was loaded, or is null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn kinesic_pipeline_set_reach(model: *mut KinesicPipeline, reach: f32) {
+    // SAFETY: by the caller's promise.
+    unsafe { playing::set_reach::<_, Engine>(model, reach) };
+}
+
 /// Strength of translator and components from now on: 0 = the source, 1 = as learned, beyond = exaggerated.
 ///
 /// # Safety

@@ -43,6 +43,20 @@ where
     unsafe { storage::put(state, State::<E>::new()) };
 }
 
+/// How far the body may be carried from where the source stands, m.
+///
+/// # Safety
+/// `model` was loaded with `E`, or is null.
+pub unsafe fn set_reach<M, E>(model: *mut M, reach: f32)
+where
+    E: Engine<KINESIC_ROWS> + Copy + 'static,
+{
+    // SAFETY: by the caller's promise.
+    if let Some(model) = unsafe { storage::get_mut::<_, Playing<E>>(model) } {
+        model.reach = reach;
+    }
+}
+
 /// Puts everything where it would be had `source` always been held.
 ///
 /// # Safety

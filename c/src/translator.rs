@@ -87,6 +87,17 @@ pub unsafe extern "C" fn kinesic_translator_step(
     unsafe { playing::step::<_, _, Engine>(model, state, source, styled) };
 }
 
+/// How far the body may be carried over the ground from where the source stands, m: changed steps make another way, which counts in full up to
+/// half the reach and then ever less. A loaded model has 4; infinity is as far as it gets.
+///
+/// # Safety
+/// `model` was loaded, or is null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn kinesic_translator_set_reach(model: *mut KinesicTranslator, reach: f32) {
+    // SAFETY: by the caller's promise.
+    unsafe { playing::set_reach::<_, Engine>(model, reach) };
+}
+
 /// Strength from now on: 0 = the source, 1 = as learned, beyond = exaggerated.
 ///
 /// # Safety

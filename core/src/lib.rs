@@ -15,6 +15,7 @@
 //! | [`emotion`] | strength of an emotion -> keyframes -> spline -> pose | Chan 2019 |
 //! | [`face`] | strength of a facial expression -> landmarks | Chan 2019 |
 //! | [`play`] | moves in layers: what a robot's engines are given, without a jump | Bollo 2018 |
+//! | [`feet`] | feet held where they stand, behind a pipeline | |
 //! | [`limit`] | the last stage: position, velocity, acceleration and jerk limits | |
 //! | [`servo`] | a coordinate as the number that a servo takes | |
 //! | [`kernel`] | the few inner loops: matrix x vector, modal recursion, activations | |
@@ -57,6 +58,7 @@ pub mod components;
 pub mod emotion;
 pub mod engine;
 pub mod face;
+pub mod feet;
 pub mod kernel;
 pub mod limit;
 pub mod mechanics;
@@ -71,6 +73,7 @@ pub use components::{Components, ComponentsState};
 pub use emotion::{Emotion, EmotionState};
 pub use engine::{Engine, Pipeline, PipelineState};
 pub use face::{FaceState, FaceSynth};
+pub use feet::{Feet, FeetState};
 pub use limit::{LimitState, LimitTable, Limiter, SmoothLimitState, SmoothLimiter};
 pub use mechanics::{BodyMechanics, MechanicsState};
 pub use model::{LoadError, Pack};

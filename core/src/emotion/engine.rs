@@ -25,8 +25,9 @@ impl<const ROWS: usize, const KEYS: usize, const WIDTH: usize> Engine<ROWS> for 
         if state.playing().is_none() {
             Engine::start(self, state, frame);
         }
-        // Travel says where the body goes; the ground of a frame is the source's.
+        // Travel says where the body goes; the ground of a frame is the source's, and no place to stay near.
         let ground = frame.ground;
+        frame.reach = f32::INFINITY;
         state.come_along();
         Emotion::step(self, state, self.dt, frame);
         frame.ground = ground;

@@ -3,7 +3,7 @@
 use super::{Engine, Fault, FromPack, Guard};
 use crate::model::{LoadError, Pack};
 use crate::pose::Pose;
-use crate::rig::{Drift, Frame, Rig};
+use crate::rig::{Drift, Frame, REACH, Rig};
 
 /// An engine, or a composition of engines, with the rig before and behind it: a pose or servo positions in, the same out.
 ///
@@ -13,6 +13,8 @@ pub struct Pipeline<'a, E, const ROWS: usize> {
     rig: Rig<'a>,
     /// The engine; its settings are its own.
     pub engine: E,
+    /// How far the body may be carried from where the source stands, m: see [`Drift`]. [`f32::INFINITY`] for as far as it gets.
+    pub reach: f32,
 }
 
 /// What a running pipeline remembers.
@@ -118,7 +120,7 @@ impl<'a, E: Engine<ROWS>, const ROWS: usize> Pipeline<'a, E, ROWS> {
         if rig.rows() > ROWS {
             return Err(LoadError::Capacity { parameter: "ROWS", found: rig.rows(), capacity: ROWS });
         }
-        Ok(Self { rig, engine })
+        Ok(Self { rig, engine, reach: REACH })
     }
 
     /// The rig that poses must have.
@@ -160,6 +162,7 @@ impl<'a, E: Engine<ROWS>, const ROWS: usize> Pipeline<'a, E, ROWS> {
             Ok(pose) => {
                 state.count(None);
                 self.rig.read(pose, &mut state.source);
+                state.source.reach = self.reach;
                 state.shown = state.source;
                 self.engine.step(&mut state.engine, &mut state.shown);
                 self.rig.write(&state.source, &state.shown, &mut state.drift, pose, out);

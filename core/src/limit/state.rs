@@ -50,6 +50,9 @@ pub struct LimitStateOf<const ROWS: usize, A> {
     /// Last step of the root over the ground, and what it was short of then, world, m.
     pub(super) root_step: [f32; 2],
     pub(super) root_error: [f32; 2],
+    /// Where it is told to be against where the source stands, and where that stood, world, m.
+    pub(super) aim: [f32; 2],
+    pub(super) ground: Option<[f32; 2]>,
     /// Where the body faces, the last step of it, and what it was short of, rad.
     pub(super) heading: Option<Heading>,
     pub(super) heading_step: f32,
@@ -68,6 +71,8 @@ impl<const ROWS: usize, A: Axis> LimitStateOf<ROWS, A> {
             clamped: [[FREE; 3]; ROWS],
             root_step: [0.0; 2],
             root_error: [0.0; 2],
+            aim: [0.0; 2],
+            ground: None,
             heading: None,
             heading_step: 0.0,
             heading_error: 0.0,

@@ -10,7 +10,7 @@ use super::{LimitStateOf, LimiterOf};
 use crate::engine::Engine;
 use crate::kernel::sin_cos;
 use crate::pose::Heading;
-use crate::rig::Frame;
+use crate::rig::{Frame, carried};
 
 /// Further from where it should be, rad or m, a coordinate counts as clamped.
 const CLAMPED: f32 = 1e-5;
@@ -27,7 +27,7 @@ impl<const ROWS: usize, A: Axis> LimiterOf<'_, ROWS, A> {
         if !frame.is_sound() {
             return;
         }
-        state.heading = Some(frame.heading);
+        (state.heading, state.ground) = (Some(frame.heading), Some(frame.ground));
         let axes = state.axes.as_flattened_mut().iter_mut().zip(frame.coordinates());
         for (limit, (axis, x)) in self.limits().zip(axes) {
             if let Some(Limit { bounds, .. }) = limit {
@@ -110,19 +110,31 @@ impl<const ROWS: usize, A: Axis> LimiterOf<'_, ROWS, A> {
         let heading = state.heading.unwrap_or(Heading::FORWARD);
         let flat = |[x, z]: [f32; 2]| Vector3::new(x, 0.0, z);
         let left = flat(state.root_error);
-        let Some(row) = frame.rows.first_mut() else { return false };
-        let [x, _, z] = row;
-        let way =
-            if told { frame.heading.to_world(Vector3::new(*x, 0.0, *z)) + flat(frame.leap) } else { Vector3::zeros() };
+        let Some([x, _, z]) = frame.rows.first().copied() else { return false };
+        let way = frame.heading.to_world(Vector3::new(x, 0.0, z)) + flat(frame.leap);
+        let way = if told { way - flat(lost(state, frame, way)) } else { Vector3::zeros() };
         let error = left + way;
         let step = free::advance(error, flat(state.root_step), left, self.root.speed, self.root.change);
         let left = error - step;
         (state.root_step, state.root_error) = ([step.x, step.z], [left.x, left.z]);
         let travel = heading.to_local(step);
-        (*x, *z) = (travel.x, travel.z);
+        if let Some([x, _, z]) = frame.rows.first_mut() {
+            (*x, *z) = (travel.x, travel.z);
+        }
+        let [aim_x, aim_z] = state.aim;
+        frame.carried = Some([aim_x - left.x, aim_z - left.z]);
         (frame.heading, frame.leap) = (heading, [0.0; 2]);
         free::norm(left) > CLAMPED
     }
+}
+
+/// What of a way would lead out of the [reach](Frame::reach), world, m. The target goes the rest.
+fn lost<const ROWS: usize, A>(state: &mut LimitStateOf<ROWS, A>, frame: &Frame<ROWS>, way: Vector3<f32>) -> [f32; 2] {
+    let ([x, z], [aim_x, aim_z]) = (frame.ground, state.aim);
+    let by = state.ground.map_or([0.0; 2], |[from_x, from_z]| [way.x - (x - from_x), way.z - (z - from_z)]);
+    (state.ground, state.aim) = (Some(frame.ground), carried(state.aim, by, frame.reach));
+    let ([by_x, by_z], [to_x, to_z]) = (by, state.aim);
+    [aim_x + by_x - to_x, aim_z + by_z - to_z]
 }
 
 impl<const ROWS: usize, A: Axis> Engine<ROWS> for LimiterOf<'_, ROWS, A> {

@@ -48,7 +48,7 @@ const LONGEST_AIR: f32 = 1.0;
 
 /// One foot between frames.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub(super) struct Foot {
+pub(crate) struct Foot {
     /// Ankle and toes, world, m.
     points: [Vector3<f32>; 2],
     /// Height of the ground under it, world, m.
@@ -81,7 +81,7 @@ fn sole(points: &[Vector3<f32>; 2], clearance: &[f32; 2]) -> f32 {
 }
 
 /// The first frame: the lower foot stands, the other too if it is as low.
-pub(super) fn start(
+pub(crate) fn start(
     feet: &mut [Foot; 2],
     points: &[[Vector3<f32>; 2]; 2],
     clearance: &[[f32; 2]; 2],
@@ -98,7 +98,7 @@ pub(super) fn start(
 }
 
 /// One frame, `elapsed` seconds after the last.
-pub(super) fn advance(
+pub(crate) fn advance(
     feet: &mut [Foot; 2],
     points: &[[Vector3<f32>; 2]; 2],
     clearance: &[[f32; 2]; 2],
@@ -113,6 +113,21 @@ pub(super) fn advance(
 }
 
 impl Foot {
+    /// Nothing seen yet.
+    pub(crate) const fn new() -> Self {
+        let nowhere = Vector3::new(0.0, 0.0, 0.0);
+        Self { points: [nowhere; 2], ground: 0.0, stands: false, pending: 0.0, still: 0.0, air: 0.0 }
+    }
+
+    pub(crate) fn stands(&self) -> bool {
+        self.stands
+    }
+
+    /// Height of the ground under it, world, m.
+    pub(crate) fn ground(&self) -> f32 {
+        self.ground
+    }
+
     fn advance(
         &mut self,
         points: &[Vector3<f32>; 2],

@@ -15,7 +15,7 @@
 //! later ones.
 
 mod blend;
-mod contact;
+pub(crate) mod contact;
 mod decouple;
 mod expression;
 mod features;

@@ -2,13 +2,18 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::{Frame, Rig};
+use super::{Frame, Rig, carried};
 use crate::pose::{Heading, Pose, unit};
 
 /// A root that goes farther in a frame, m, was put elsewhere.
 const LEAP: f32 = 0.5;
 
-/// How far a body has been carried away from where the source stands: engines change travel, and this is its sum, world, m.
+/// How far a body has been carried from where the source stands: engines change travel, and this is its sum, world, m.
+///
+/// It keeps within the frame's [`reach`](Frame::reach), 2 m by default. What carries the body farther out counts in full up to half the reach,
+/// then ever less, and nothing at the reach; what brings it back counts in full. So no sequence of frames takes it beyond, and where nothing
+/// travels nothing moves. With limits their target keeps the reach, and the body is behind it by as much as they hold it back: a leap
+/// of the source is bridged. An engine that looks at no source, an [`Emotion`](crate::Emotion), goes its own way.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Drift {
     at: [f32; 2],
@@ -129,9 +134,12 @@ impl Rig<'_> {
         };
         let way = |heading: Heading, [x, _, z]: &[f32; 3]| heading.to_world(Vector3::new(*x, 0.0, *z));
         let change = way(styled.heading, after) - way(source.heading, before);
-        let ([x, z], [to_x, to_z], [from_x, from_z]) = (drift.at, styled.leap, source.leap);
-        let [x, z] = [x + change.x + (to_x - from_x), z + change.z + (to_z - from_z)];
-        drift.at = [x, z];
+        let ([to_x, to_z], [from_x, from_z]) = (styled.leap, source.leap);
+        drift.at = styled.carried.unwrap_or_else(|| {
+            let [x, z] = carried(drift.at, [change.x, change.z], styled.reach);
+            [x + (to_x - from_x), z + (to_z - from_z)]
+        });
+        let [x, z] = drift.at;
         let ([ground_x, ground_z], [_, height, _]) = (styled.ground, *after);
         pose.root = Vector3::new(ground_x + x, height, ground_z + z);
     }

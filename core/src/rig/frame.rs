@@ -1,5 +1,6 @@
 //! All coordinates of one moment.
 
+use super::REACH;
 use crate::pose::{FARTHEST, Heading, is_number};
 
 /// The coordinates of one moment, three to a row, and where the body stands. See the [module](super) for the order of rows.
@@ -13,6 +14,11 @@ pub struct Frame<const ROWS: usize> {
     pub ground: [f32; 2],
     /// How far the body was put elsewhere since the last frame, world, m: no travel, but a way that limits have to bridge.
     pub leap: [f32; 2],
+    /// How far engines may carry the body from where the source stands, m: see [`Drift`](super::Drift).
+    pub reach: f32,
+    /// Where limits have put the body against where the source stands, world, m. They keep the reach themselves: a change of their
+    /// travel would break them.
+    pub(crate) carried: Option<[f32; 2]>,
     /// True once a pose was read: the next one has travelled from here.
     pub(super) started: bool,
     /// True once a pose was read: `ground` means something.
@@ -27,6 +33,8 @@ impl<const ROWS: usize> Frame<ROWS> {
             heading: Heading::FORWARD,
             ground: [0.0; 2],
             leap: [0.0; 2],
+            reach: REACH,
+            carried: None,
             started: false,
             known: false,
         }

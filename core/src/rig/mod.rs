@@ -7,6 +7,7 @@
 //! | `frame` | [`Frame`]: all coordinates of one moment |
 //! | `model` | [`Rig`]: a checked view of the pack's tables |
 //! | `convert` | pose -> frame, frame -> pose |
+//! | `reach` | how far a body may be carried from where its source stands |
 //!
 //! # Coordinates
 //!
@@ -27,10 +28,13 @@ mod convert;
 mod frame;
 mod joint;
 mod model;
+mod reach;
 mod rotation;
 
 pub use convert::Drift;
 pub use frame::Frame;
 pub use joint::JointKind;
 pub use model::Rig;
+pub use reach::REACH;
+pub(crate) use reach::carried;
 pub use rotation::{exp, log};

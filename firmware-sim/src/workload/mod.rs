@@ -118,6 +118,7 @@ const ALL: &[(&str, Make)] = &[
     ("emotion-play", emotion::play),
     ("styled", styled::float),
     ("styled-i16", styled::fixed),
+    ("styled-feet", styled::feet),
     ("servos", servos::float),
     ("servos-i16", servos::fixed),
     ("servo-head", machine::head),

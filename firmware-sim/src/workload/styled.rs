@@ -7,6 +7,7 @@ use kinesic_host::limit::LimitsModel;
 use kinesic_host::pack::Provenance;
 use kinesic_host::rig::Rig;
 use kinesic_workloads::by_hand::ByHand;
+use kinesic_workloads::held::StyledFeet;
 use kinesic_workloads::posed::{GAIT_JOINTS, Styled, StyledFixed};
 
 use super::translator::{self, numbers};
@@ -25,6 +26,12 @@ pub fn by_hand(frames: usize) -> Result<Prepared, WorkloadError> {
     let name = "by-hand";
     let (pack, frames) = made(name, frames, false)?;
     on_host::<ByHand>(name, "styled.kin", pack, &frames)
+}
+
+/// Then feet are held.
+pub(super) fn feet(name: &str, frames: usize) -> Result<Prepared, WorkloadError> {
+    let (pack, frames) = made(name, frames, false)?;
+    on_host::<StyledFeet>(name, "styled.kin", pack, &frames)
 }
 
 /// The translator in fixed point.

@@ -10,6 +10,7 @@ mod digest;
 pub mod emotion;
 pub mod face;
 mod frames;
+pub mod held;
 pub mod kernel;
 pub mod machine;
 pub mod mechanics;

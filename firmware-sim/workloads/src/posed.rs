@@ -28,8 +28,8 @@ pub struct Posed<C, const JOINTS: usize, const ROWS: usize>(PhantomData<C>);
 #[derive(Clone, Debug)]
 pub struct Running<S, const JOINTS: usize, const ROWS: usize> {
     state: PipelineState<S, ROWS>,
-    source: Pose<JOINTS>,
-    out: Pose<JOINTS>,
+    pub(crate) source: Pose<JOINTS>,
+    pub(crate) out: Pose<JOINTS>,
 }
 
 /// Takes an input frame as [`pose::load`] does.

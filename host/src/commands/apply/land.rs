@@ -2,6 +2,7 @@
 
 use clap::ValueEnum;
 use kinesic::Pack;
+use kinesic::model::LoadError;
 use kinesic_host::clip::{Clip, JointMap};
 use kinesic_host::feet::{self, IN_STEP, OUT_OF_STEP};
 use kinesic_host::own_body::OwnBody;
@@ -25,6 +26,8 @@ pub enum On {
 pub enum Feet {
     /// The root follows the feet that stand in the clip, and legs reach for where these stood
     Lock,
+    /// As a device holds them, which does not look ahead; with --on pack
+    Live,
     /// As the engine makes them
     Free,
 }
@@ -64,6 +67,15 @@ impl Place {
             return Err(miette!(help = "leave --on out", "--on clip: {why}"));
         }
         let on = on.unwrap_or(if own && !limited { On::Clip } else { On::Pack });
+        if feet == Some(Feet::Live) && (on == On::Clip || !own) {
+            let why = match own {
+                true => "a device holds the feet of the pack's skeleton",
+                false if source.is_some() => "a robot has no feet",
+                false => "a stored motion comes from no clip",
+            };
+            let help = if own { "add --on pack, or hold feet with --feet lock" } else { "leave --feet out" };
+            return Err(miette!(help = help, "--feet live: {why}"));
+        }
         Ok(Self { on, feet: feet.unwrap_or(if on == On::Clip { Feet::Lock } else { Feet::Free }) })
     }
 
@@ -71,20 +83,15 @@ impl Place {
     pub fn land<'a>(
         &self,
         source: Option<&'a Source>,
-        rig: &'a Rig,
+        (pack, rig): (&Pack, &'a Rig),
         clip: Option<&'a Clip>,
         played: &Played,
-    ) -> Landed<'a> {
+    ) -> Result<Landed<'a>, LoadError> {
         let stands = source.is_some_and(|source| source.machine.is_some());
         let Some(clip) = clip.filter(|_| !stands) else {
             let clip = played.on_clock(&played.clip, &played.clip);
-            return Landed {
-                clip,
-                from: None,
-                map: rig.frames().travels().then_some(&rig.map),
-                step: None,
-                feet: None,
-            };
+            let map = rig.frames().travels().then_some(&rig.map);
+            return Ok(Landed { clip, from: None, map, step: None, feet: None });
         };
         let (from, styled, map) = match source.filter(|_| self.on == On::Clip) {
             Some(source) => (&source.clip, OwnBody::new(source, rig).carry(clip, &played.clip), &source.map),
@@ -93,16 +100,12 @@ impl Place {
         let step = feet::kept_step((from, map), (&styled, map));
         let (styled, feet) = match self.feet {
             Feet::Free => (styled, "free"),
-            Feet::Lock if out_of_step(&step) => (styled, "free: out of step with the clip"),
+            Feet::Lock | Feet::Live if out_of_step(&step) => (styled, "free: out of step with the clip"),
             Feet::Lock => (feet::lock(from, &styled, map), "locked"),
+            Feet::Live => (feet::live(pack, rig, from, &styled)?, "held as on the device"),
         };
-        Landed {
-            clip: played.on_clock(&styled, clip),
-            from: Some(from),
-            map: Some(map),
-            step: Some(step),
-            feet: Some(feet),
-        }
+        let clip = played.on_clock(&styled, clip);
+        Ok(Landed { clip, from: Some(from), map: Some(map), step: Some(step), feet: Some(feet) })
     }
 }
 

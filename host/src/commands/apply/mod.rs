@@ -48,6 +48,7 @@ Examples:
   kinesic apply angry.kin walk.bvh --out as-drawn.bvh --strength @curve.csv
   kinesic apply angry.kin walks/ --out angry-walks/ --format glb
   kinesic apply angry.kin walk.bvh --out as-on-the-device.bvh --on pack
+  kinesic apply angry.kin walk.bvh --out feet-held-on-it.bvh --on pack --feet live
   kinesic apply angry.kin walk.bvh --out arms-only.bvh --mask '*=0,LeftArm+=1,r_shoulder+=1'
   kinesic apply child.kin jump.csv --out child-jump.bvh --timing learned
   kinesic apply components.kin --stored --out stored.bvh
@@ -83,7 +84,8 @@ pub struct Args {
     /// Whose skeleton the result has [default: the clip's; the pack's where it holds limits, and of a robot]
     #[arg(long, value_enum, value_name = "SKELETON")]
     on: Option<On>,
-    /// Hold feet where they stand in the clip, or leave them as they come [default: lock; on the pack's skeleton free, as on the device]
+    /// Hold feet where they stand in the clip, or leave them as they come [default: lock; on the pack's skeleton free, as on a device that holds
+    /// none]
     #[arg(long, value_enum)]
     feet: Option<Feet>,
     /// Where the clip is unlike the training of a translator: fade the style, or keep all of it
@@ -197,7 +199,7 @@ impl Stage<'_> {
         let clip = source.as_ref().map(|source| source.on_rig(rig, fps)).transpose().into_diagnostic()?;
         let played = play(args, pack, rig, clip.as_ref(), &self.knobs)?;
         let place = Place::choose(args.on, args.feet, pack, source.as_ref())?;
-        let landed = place.land(source.as_ref(), rig, clip.as_ref(), &played);
+        let landed = place.land(source.as_ref(), (pack, rig), clip.as_ref(), &played).into_diagnostic()?;
         let (styled, limits) = match limit::play(pack, rig, &landed.clip).into_diagnostic()? {
             Some((clip, clamps)) => (Cow::Owned(clip), Some(clamps)),
             None => (Cow::Borrowed(&landed.clip), None),
