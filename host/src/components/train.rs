@@ -111,6 +111,8 @@ pub struct Trained {
     pub reconstruction_error: f64,
     /// `|Gram(C_S) - Gram(C_X)| / |Gram(C_S)|`.
     pub style_distance: f64,
+    /// `|Gram(C_S) - Gram(C_C)| / |Gram(C_S)|`: doing nothing.
+    pub style_distance_before: f64,
     /// `|C_C - C_X| / |C_C|`.
     pub content_distance: f64,
     /// From the content to the style, over frames matched by dynamic time warping.
@@ -192,6 +194,7 @@ pub fn train_kept(
     Ok(Trained {
         reconstruction_error: own.factors.error(content.values.as_ref()),
         style_distance: style_distance(&wanted.factors.components, &learned.components),
+        style_distance_before: style_distance(&wanted.factors.components, &own.factors.components),
         content_distance: content_distance(&own.factors.components, &learned.components),
         degrees_before: to_style(clips[0])?,
         degrees_after: to_style(&result)?,

@@ -16,6 +16,7 @@ use kinesic_host::translate::{
 use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
 
+use super::learned::{Forced, no_nearer, same};
 use super::report::{ReportArgs, translate::page};
 use super::resume::ResumeArgs;
 use super::session::Session;
@@ -23,6 +24,7 @@ use crate::commands::angles;
 use crate::commands::clips::{Pairs, Reading};
 use crate::commands::origin::{fingerprints, name_of};
 use crate::commands::precision::Precision;
+use crate::commands::quality;
 
 /// Learn to translate one manner of moving into another, from pairs of clips
 ///
@@ -64,9 +66,8 @@ pub struct Args {
     /// Seed of random choices; recorded in the pack (this trainer makes none)
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Write the pack even if it learned nothing, or is worse than doing nothing
-    #[arg(long)]
-    force: bool,
+    #[command(flatten)]
+    forced: Forced,
     /// Print the results as one JSON object
     #[arg(long)]
     json: bool,
@@ -127,31 +128,17 @@ fn check_rate<'a>(fps: f64, clips: impl Iterator<Item = &'a Clip>) -> miette::Re
     ))
 }
 
-/// Distances between clips under which nothing is to be learned, cm and degrees.
-const NOTHING: [f64; 2] = [0.01, 0.05];
-
-/// Refuses a pack that cannot be of use.
-fn check_learned(judged: &Errors, force: bool) -> miette::Result<()> {
-    let [before, after] = [&judged.degrees.identity, &judged.degrees.error].map(|degrees| degrees.all);
-    let why = if judged.identity_cm < NOTHING[0] && before < NOTHING[1] {
-        "the clips of the pairs are the same motion: there is nothing to learn".to_owned()
-    } else if judged.error_cm >= judged.identity_cm && after >= before {
-        format!(
-            "the pack comes no nearer to its own training clips than doing nothing: {:.2} against {:.2} cm, {after:.2} against {before:.2} degrees",
-            judged.error_cm, judged.identity_cm
-        )
-    } else {
-        return Ok(());
-    };
-    if force {
-        eprintln!("note: {why}");
-        return Ok(());
+/// Why the pack cannot be of use, if so.
+fn why_not(judged: &Errors) -> Option<String> {
+    let before = [judged.identity_cm, judged.degrees.identity.all];
+    if same(before) {
+        return Some("the clips of the pairs are the same motion: there is nothing to learn".to_owned());
     }
-    Err(miette!(
-        help =
-            "check that the clips of a pair show the same content in two manners; --force writes the pack all the same",
-        "{why}"
-    ))
+    no_nearer(
+        "the pack comes no nearer to its own training clips",
+        before,
+        [judged.error_cm, judged.degrees.error.all],
+    )
 }
 
 /// Runs the command.
@@ -215,7 +202,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let pack = preview.pack().into_diagnostic()?;
     let report = evaluate(&pack, &rig, &trained.baselines, Some(&turns), &named).into_diagnostic()?;
     let judged = report.errors.judged(trained.alignment);
-    check_learned(&judged, args.force)?;
+    args.forced.check(why_not(&judged), "check that the clips of a pair show the same content in two manners")?;
     provenance.metrics = metrics(&trained, &judged);
     let bytes = args.precision.of(trained.model.pack(&rig, &provenance), &provenance)?;
     let bytes = session.of_robot(bytes, &options, &provenance)?;
@@ -367,6 +354,9 @@ fn print(summary: &Summary, trained: &Trained) {
         let angle =
             |of: fn(&Degrees) -> f64| degrees.map_or_else(|| "-".to_owned(), |degrees| format!("{:.2}", of(degrees)));
         println!("               {name:<8} {cm:8.2} {:>8} {:>8}", angle(|d| d.all), angle(|d| d.leaves));
+    }
+    if let Some(found) = &summary.training.quality {
+        quality::compared(found, quality::PAIR, "training pairs");
     }
     for note in notes(trained).iter().skip(4) {
         println!("note: {note}");

@@ -1,0 +1,5 @@
+//! Which strengths are plausible, found by playing them.
+
+mod figures;
+
+pub use figures::{Figures, Stand};
