@@ -131,7 +131,9 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let curve = if args.curve { trade_off(&trained, &options, &CURVE, &cache) } else { Vec::new() };
     drop(cache);
 
-    let mut provenance = session.provenance(prints, vec![trained.choice.reason.clone()]);
+    let ends = trained.strengths.why().map(|why| format!("plausible strengths end: {why}"));
+    let notes = std::iter::once(trained.choice.reason.clone()).chain(ends).collect();
+    let mut provenance = session.provenance(prints, notes);
     provenance.metrics = recorded(&trained);
     let preview = PackFile::from_bytes(&trained.model.pack(&rig, &provenance));
     let report = evaluate(&preview.pack().into_diagnostic()?, &rig, &provenance.metrics).into_diagnostic()?;
@@ -151,6 +153,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
         steps: trained.learned.history.len() - 1,
         objective: trained.learned.history.last().copied().unwrap_or_default(),
         strength: trained.model.strength,
+        strength_ends: trained.strengths.why(),
         style_distance_before: trained.style_distance_before,
         curve: &curve,
         training: &report,
@@ -224,6 +227,9 @@ struct Summary<'a> {
     steps: usize,
     objective: f64,
     strength: [f64; 2],
+    /// What ends the plausible strengths.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    strength_ends: Option<String>,
     /// `|Gram(C_S) - Gram(C_C)| / |Gram(C_S)|`: doing nothing.
     style_distance_before: f64,
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
@@ -266,7 +272,11 @@ fn print(summary: &Summary) {
         }
     }
     println!(
-        "{}: {} bytes, {} frames a second, strengths up to {}",
-        summary.pack, summary.bytes, summary.frame_rate, summary.strength[1]
+        "{}: {} bytes, {} frames a second, plausible strengths 0 to {}{}",
+        summary.pack,
+        summary.bytes,
+        summary.frame_rate,
+        summary.strength[1],
+        summary.strength_ends.as_ref().map_or(String::new(), |why| format!("; {why}"))
     );
 }

@@ -1,6 +1,7 @@
 //! `kinesic train`: one file an engine.
 
 mod components;
+mod doubtful;
 mod emotion;
 mod face;
 mod learned;

@@ -7,6 +7,7 @@ use kinesic_host::clip::Clip;
 use kinesic_host::measure::Degrees;
 use kinesic_host::measure::turns::Turns;
 use kinesic_host::pack::{Metric, PackFile};
+use kinesic_host::plausible::Plausible;
 use kinesic_host::prepare::{Source, common_rate};
 use kinesic_host::step_cache::StepCache;
 use kinesic_host::translate::{
@@ -16,6 +17,7 @@ use kinesic_host::translate::{
 use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
 
+use super::doubtful::doubtful;
 use super::learned::{Forced, no_nearer, same};
 use super::report::{ReportArgs, translate::page};
 use super::resume::ResumeArgs;
@@ -197,18 +199,20 @@ pub fn run(args: &Args) -> miette::Result<()> {
     (provenance.baselines, provenance.turns) = (trained.baselines.clone(), turns.numbers());
     let preview = PackFile::from_bytes(&args.precision.of(trained.model.pack(&rig, &provenance), &provenance)?);
     let (neutral, styled): (Vec<&Clip>, Vec<&Clip>) = clips.iter().map(|(neutral, styled)| (neutral, styled)).unzip();
-    trained.model.strength =
-        plausible(&preview.pack().into_diagnostic()?, &rig, &neutral, &styled).into_diagnostic()?;
+    let strengths = plausible(&preview.pack().into_diagnostic()?, &rig, &neutral, &styled).into_diagnostic()?;
+    trained.model.strength = strengths.range();
+    provenance.notes.extend(strengths.why().map(|why| format!("plausible strengths end: {why}")));
     let pack = preview.pack().into_diagnostic()?;
     let report = evaluate(&pack, &rig, &trained.baselines, Some(&turns), &named).into_diagnostic()?;
     let judged = report.errors.judged(trained.alignment);
+    let doubtful = doubtful(&report.pairs, trained.alignment);
     args.forced.check(why_not(&judged), "check that the clips of a pair show the same content in two manners")?;
     provenance.metrics = metrics(&trained, &judged);
     let bytes = args.precision.of(trained.model.pack(&rig, &provenance), &provenance)?;
     let bytes = session.of_robot(bytes, &options, &provenance)?;
     let file = session.write(&bytes)?;
     let page = page(&trained, &report, &named[0], &rig, &file)?;
-    let summary = Summary::new(args, &trained, &report, bytes.len(), fps);
+    let summary = Summary { doubtful, ..Summary::new(args, &trained, &report, strengths, bytes.len(), fps) };
     session.finish(&file, page, Some(checkpoint), &summary, |summary| {
         print(summary, &trained);
         Ok(())
@@ -313,12 +317,25 @@ struct Summary<'a> {
     forms: Vec<(String, f64)>,
     mirrored: bool,
     strength: [f64; 2],
+    /// What ends the plausible strengths.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    strength_ends: Option<String>,
     validation_cm: f64,
+    /// Pairs whose clips do not seem to show the same action, and why.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    doubtful: Vec<String>,
     training: &'a Report,
 }
 
 impl<'a> Summary<'a> {
-    fn new(args: &Args, trained: &Trained, report: &'a Report, bytes: usize, fps: f64) -> Self {
+    fn new(
+        args: &Args,
+        trained: &Trained,
+        report: &'a Report,
+        strengths: Plausible,
+        bytes: usize,
+        fps: f64,
+    ) -> Self {
         Self {
             pack: args.out.display().to_string(),
             bytes,
@@ -328,8 +345,10 @@ impl<'a> Summary<'a> {
             model: describe(&trained.candidate.0),
             forms: trained.forms.iter().map(|(candidate, error)| (describe(candidate), *error)).collect(),
             mirrored: trained.mirrored,
-            strength: trained.model.strength,
+            strength: strengths.range(),
+            strength_ends: strengths.why(),
             validation_cm: trained.candidate.1,
+            doubtful: Vec::new(),
             training: report,
         }
     }
@@ -358,10 +377,11 @@ fn print(summary: &Summary, trained: &Trained) {
     if let Some(found) = &summary.training.quality {
         quality::compared(found, quality::PAIR, "training pairs");
     }
-    for note in notes(trained).iter().skip(4) {
+    for note in notes(trained).iter().skip(4).chain(&summary.doubtful) {
         println!("note: {note}");
     }
-    let [low, high] = trained.model.strength;
+    let [low, high] = summary.strength;
     let Summary { pack, bytes, frame_rate, .. } = summary;
-    println!("{pack}: {bytes} bytes, {frame_rate} frames a second, plausible strengths {low} to {high}");
+    let why = summary.strength_ends.as_ref().map_or(String::new(), |why| format!("; {why}"));
+    println!("{pack}: {bytes} bytes, {frame_rate} frames a second, plausible strengths {low} to {high}{why}");
 }
