@@ -96,6 +96,7 @@ for clip in clips:
     for engine in engines:
         found = [[float(x) for x in row[2:]] for row in rows if row[:2] == [engine, clip]]
         mean = [sum(column) / len(column) for column in zip(*found)]
-        cell = lambda x, digits: "-" if x != x else f"{x:.{digits}f}"
+        # Nothing is minus zero.
+    cell = lambda x, digits: "-" if x != x else f"{round(x, digits) + 0.0:.{digits}f}"
         print(f"| {clip} | {engine} | " + " | ".join(map(cell, mean, [1, 1, 2, 0, 0, 1, 2])) + " |")
 PYTHON

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Prints the tables of docs/quality.md. About six minutes on two cores. Needs the real clips (KINESIC_DATA).
-# usage: docs/quality.sh [xia|swap|feet|child|people|recognition]...   (default: all)
+# usage: docs/quality.sh [xia|swap|strengths|feet|child|people|recognition]...   (default: all)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 data=$(realpath "${KINESIC_DATA:-../shared/data}")
@@ -108,6 +108,19 @@ PYTHON
     done
 }
 
+strengths_table() {
+    local clips=$data/xia style row=()
+    cargo build --release --locked -q -p kinesic-host --example plausible
+    for style in angry childlike depressed old proud sexy strutting; do
+        "$kinesic" train translate --pair "$clips/neutral_01_000.bvh" "$clips/${style}_01_000.bvh" --out "$work/$style.kin" --json >"$work/train"
+        row+=("$clips/neutral_01_000.bvh" "$clips/${style}_01_000.bvh" "$work/$style.kin")
+    done
+    echo
+    echo "Plausible strengths, from 0 to"
+    echo
+    "${kinesic%/*}/examples/plausible" "${row[@]}"
+}
+
 # child PERSON: trained on everybody else
 child() {
     local table=(--pairs "$data/pairs.tsv" --where style=child)
@@ -168,11 +181,12 @@ people_table() {
         END { printf "| **mean** | %.2f | %.2f | %.2f | %.2f | |\n", sum[1], sum[2], sum[3], sum[4] }' "$work/all"
 }
 
-for part in "${@:-xia swap feet child people recognition}"; do
+for part in "${@:-xia swap strengths feet child people recognition}"; do
     for table in $part; do
         case $table in
         xia) xia 000 001 ;;
         swap) xia 001 000 ;;
+        strengths) strengths_table ;;
         feet) feet_table ;;
         child) child_table ;;
         people) people_table ;;

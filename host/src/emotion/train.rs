@@ -375,7 +375,7 @@ fn quantiles(mut values: Vec<f64>) -> [f64; 2] {
 }
 
 /// Plays the ends of every range, the other strengths in the middle of theirs, and brings in those at which the motion leaves what the training
-/// motions do. Says which.
+/// motions do. Says which, and where it does so between the ends.
 fn hold(model: &mut EmotionModel, rig: &Rig, motions: &[Motion]) -> Result<Vec<String>, RigError> {
     let clip = |motion: &Motion| {
         let start = motion.segment.start;
@@ -389,15 +389,15 @@ fn hold(model: &mut EmotionModel, rig: &Rig, motions: &[Motion]) -> Result<Vec<S
     middle.iter_mut().zip(&model.attributes).for_each(|(to, a)| *to = a.strength[0].midpoint(a.strength[1]));
     let mut notes = Vec::new();
     for (index, attribute) in model.attributes.iter_mut().enumerate() {
+        let once = |strength: f64| {
+            let mut strengths = middle;
+            strengths[index] = strength as f32;
+            let still = Settings { from: strengths, to: strengths, fps: FRAME_RATE, seconds: Some(0.0) };
+            let seconds = f64::from(play(&pack, &still)?.round[0]);
+            Ok::<_, RigError>(play(&pack, &Settings { seconds: Some(seconds), ..still })?.clip)
+        };
         for (at, which) in ["lowest", "highest"].into_iter().enumerate() {
             let asked = attribute.strength[at];
-            let once = |strength: f64| {
-                let mut strengths = middle;
-                strengths[index] = strength as f32;
-                let still = Settings { from: strengths, to: strengths, fps: FRAME_RATE, seconds: Some(0.0) };
-                let seconds = f64::from(play(&pack, &still)?.round[0]);
-                Ok::<_, RigError>(play(&pack, &Settings { seconds: Some(seconds), ..still })?.clip)
-            };
             let (found, broken) = bounds.end(rig, [middle[index], asked].map(f64::from), once)?;
             if let Some(broken) = broken {
                 attribute.strength[at] = found as f32;
@@ -405,6 +405,14 @@ fn hold(model: &mut EmotionModel, rig: &Rig, motions: &[Motion]) -> Result<Vec<S
                     "{}: the {which} plausible strength is {found:.2}, not {asked:.2} as of the motions: at that, {broken}",
                     attribute.name
                 ));
+            }
+        }
+        // A range has two ends, so what breaks between them can only be said.
+        let [low, high] = attribute.strength.map(f64::from);
+        for quarter in [1.0, 2.0, 3.0] {
+            let strength = low + quarter / 4.0 * (high - low);
+            if let Some(broken) = bounds.broken(rig, &[once(strength)?]) {
+                notes.push(format!("{}: at strength {strength:.2}, {broken}", attribute.name));
             }
         }
     }

@@ -94,15 +94,18 @@ impl Bounds {
 
     /// What motions do that the training clips do not.
     pub fn broken(&self, rig: &Rig, played: &[Clip]) -> Option<Broken> {
-        let (seen, found) = (&self.seen, Figures::of(rig, played.iter()));
+        let found = Figures::of(rig, played.iter());
+        self.rough(&found).or_else(|| (self.seen.outside(rig, &found) > 1.0).then_some(Broken::Joints))
+    }
+
+    /// The same without the joints' rotations.
+    fn rough(&self, found: &Figures) -> Option<Broken> {
+        let seen = &self.seen;
         if found.speed_m_s > SPEED * seen.speed_m_s {
             return Some(Broken::Speed);
         }
         if found.jerk_m_s3 > JERK * seen.jerk_m_s3 {
             return Some(Broken::Jerk);
-        }
-        if seen.outside(rig, &found) > 1.0 {
-            return Some(Broken::Joints);
         }
         let (Some(stood), stands) = (seen.stand, found.stand) else { return None };
         let standing = stands.map_or(0.0, |stand| stand.standing_percent);
@@ -133,6 +136,9 @@ impl Bounds {
     }
 
     /// Strengths from a quarter to `limit` are played in turn; the first that breaks a bound is the first that is not plausible.
+    ///
+    /// Between source and target a joint passes where neither of them is, so joints are looked at beyond strength 1, and may go farther than they
+    /// do there.
     pub fn largest<E>(
         &self,
         rig: &Rig,
@@ -140,12 +146,88 @@ impl Bounds {
         mut play: impl FnMut(f64) -> Result<Vec<Clip>, E>,
     ) -> Result<Plausible, E> {
         let mut found = Plausible::default();
+        let mut turned = self.seen.clone();
         while found.largest < limit && found.broken.is_none() {
-            found.broken = self.broken(rig, &play(found.largest + STEP)?);
+            let strength = found.largest + STEP;
+            let figures = Figures::of(rig, play(strength)?.iter());
+            let outside = || (strength > 1.0 && turned.outside(rig, &figures) > 1.0).then_some(Broken::Joints);
+            found.broken = self.rough(&figures).or_else(outside);
+            if strength <= 1.0 {
+                turned = turned.or(figures);
+            }
             if found.broken.is_none() {
-                found.largest += STEP;
+                found.largest = strength;
             }
         }
         Ok(found)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::convert::Infallible;
+
+    use nalgebra::UnitQuaternion;
+
+    use super::*;
+    use crate::gait::{Manner, walk};
+
+    fn of(play: impl Fn(f64, Clip) -> Clip) -> Plausible {
+        let plain = walk(&Manner::NEUTRAL, 3.0, 60.0, 0.0, 3);
+        let map = crate::clip::JointMap::choose(&plain.skeleton, None).unwrap().unwrap();
+        let rig = Rig::new(&plain.skeleton, &map).unwrap();
+        let clips = || std::iter::once(&plain);
+        let play = |strength: f64| Ok::<_, Infallible>(vec![play(strength, plain.clone())]);
+        Bounds::new(&rig, clips(), clips()).largest(&rig, 3.0, play).unwrap_or_else(|never| match never {})
+    }
+
+    #[test]
+    fn what_stays_as_it_is_stays_plausible() {
+        assert_eq!(of(|_, clip| clip), Plausible { largest: 3.0, broken: None });
+    }
+
+    #[test]
+    fn each_bound_ends_the_range_with_its_name() {
+        let shaken = of(|strength, mut clip| {
+            let shake = |(frame, root): (usize, &mut nalgebra::Vector3<f64>)| {
+                root.y += 0.001 * strength * if frame % 2 == 0 { 1.0 } else { -1.0 };
+            };
+            clip.root.iter_mut().enumerate().for_each(shake);
+            clip
+        });
+        assert_eq!(shaken.broken, Some(Broken::Jerk), "{shaken:?}");
+        assert!(shaken.why().unwrap().contains("jerks more"), "{shaken:?}");
+        let carried = of(|strength, mut clip| {
+            clip.root.iter_mut().enumerate().for_each(|(frame, root)| root.z += 0.02 * strength * frame as f64);
+            clip
+        });
+        assert_eq!(carried.broken, Some(Broken::Feet), "{carried:?}");
+        // 25 degrees a unit: where strength 1 is, and 30 degrees more.
+        let bent = of(|strength, mut clip| {
+            let joints = clip.skeleton.len();
+            let head = clip.skeleton.find("Head").unwrap();
+            let bend = UnitQuaternion::from_axis_angle(&nalgebra::Vector3::x_axis(), 0.436 * strength);
+            clip.rotations.iter_mut().skip(head).step_by(joints).for_each(|turn| *turn *= bend);
+            clip
+        });
+        assert_eq!(bent.broken, Some(Broken::Joints), "{bent:?}");
+        assert!((2.0..=2.25).contains(&bent.largest), "{bent:?}");
+    }
+
+    #[test]
+    fn an_end_that_breaks_is_brought_in() {
+        let plain = walk(&Manner::NEUTRAL, 3.0, 60.0, 0.0, 3);
+        let map = crate::clip::JointMap::choose(&plain.skeleton, None).unwrap().unwrap();
+        let rig = Rig::new(&plain.skeleton, &map).unwrap();
+        let bounds = Bounds::new(&rig, std::iter::once(&plain), std::iter::empty());
+        let faster = |strength: f64| {
+            let mut clip = plain.clone();
+            clip.frame_time /= strength;
+            Ok::<_, Infallible>(clip)
+        };
+        let (end, broken) = bounds.end(&rig, [1.0, 1.1], faster).unwrap_or_else(|never| match never {});
+        assert_eq!((end, broken), (1.1, None));
+        let (end, broken) = bounds.end(&rig, [1.0, 1.2], faster).unwrap_or_else(|never| match never {});
+        assert!(end < 1.2 && end > 1.1 && broken == Some(Broken::Jerk), "{end} {broken:?}");
     }
 }
