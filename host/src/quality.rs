@@ -164,7 +164,8 @@ mod tests {
     fn a_clip_of_one_frame_has_numbers() {
         let clip = walk(&Manner::NEUTRAL, 1.0, 60.0, 0.0, 1).slice(0..1);
         let map = JointMap::choose(&clip.skeleton, None).unwrap().unwrap();
-        let Quality { foot_slide_cm_s, standing_percent, steps_a_minute, jerk_m_s3, lean_degrees } = measure(&clip, &map);
+        let Quality { foot_slide_cm_s, standing_percent, steps_a_minute, jerk_m_s3, lean_degrees } =
+            measure(&clip, &map);
         let numbers = [foot_slide_cm_s, standing_percent, steps_a_minute, jerk_m_s3, lean_degrees.unwrap()];
         assert!(numbers.iter().all(|x| x.is_finite()), "{numbers:?}");
     }

@@ -24,7 +24,8 @@ fn says(folder: &Path, line: &str) -> (i32, String) {
     let mut code = 0;
     for more in ["", " --json"] {
         let line = format!("{line}{more}");
-        let command = Command::new(env!("CARGO_BIN_EXE_kinesic")).args(line.split_whitespace()).current_dir(folder).output();
+        let command =
+            Command::new(env!("CARGO_BIN_EXE_kinesic")).args(line.split_whitespace()).current_dir(folder).output();
         let output = command.unwrap();
         code = output.status.code().unwrap();
         let text = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap()).concat();
@@ -39,7 +40,8 @@ fn says(folder: &Path, line: &str) -> (i32, String) {
 fn refused(folder: &Path, line: &str, why: &str) {
     let (code, said) = says(folder, line);
     assert!(code == 1 && said.contains(why), "{line}: {code}: {said}");
-    let named = |out: &str| line.split_whitespace().skip_while(|word| *word != out).nth(1).map(|name| folder.join(name));
+    let named =
+        |out: &str| line.split_whitespace().skip_while(|word| *word != out).nth(1).map(|name| folder.join(name));
     if let Some(out) = named("--out") {
         assert!(!out.exists(), "{line} wrote {}", out.display());
     }
@@ -116,6 +118,15 @@ fn whatever_is_trained_or_measured_has_figures() {
     ] {
         says(at, line);
     }
+    let pages = std::fs::read_dir(at).unwrap().map(|entry| entry.unwrap().path());
+    let pages: Vec<_> = pages.filter(|path| path.to_string_lossy().ends_with(".report.html")).collect();
+    assert!(pages.len() >= 4, "{pages:?}");
+    for page in pages {
+        let text = std::fs::read_to_string(&page).unwrap();
+        let cells = text.split("<td>").skip(1).filter_map(|cell| cell.split("</td>").next());
+        let wrong = cells.flat_map(str::split_whitespace).find(|word| is_no_figure(word));
+        assert!(wrong.is_none() && !text.contains("NaN"), "{}: {wrong:?}", page.display());
+    }
 }
 
 #[test]
@@ -128,7 +139,8 @@ fn labels_that_say_nothing_teach_nothing() {
     };
     // One clip is all labels: whatever order is found is chance.
     table("one.tsv", &[("walk.bvh", "calm"), ("same.bvh", "weary"), ("near.bvh", "calm"), ("walk.bvh", "weary")]);
-    let train = "train emotion --labels one.tsv --order weary>calm --hold-out 0 --keyframes 5 --components 4 --out e.kin";
+    let train =
+        "train emotion --labels one.tsv --order weary>calm --hold-out 0 --keyframes 5 --components 4 --out e.kin";
     let (code, said) = says(at, train);
     assert!(code == 1 && !at.join("e.kin").exists(), "{said}");
     table("two.tsv", &[("walk.bvh", "calm"), ("same.bvh", "calm"), ("weary.bvh", "weary"), ("weary.bvh", "weary")]);

@@ -160,7 +160,9 @@ pub fn run(args: &Args) -> miette::Result<()> {
     print(&summary);
     let (end, length) = (asked.end(), summary.seconds);
     if end > length + 1.0 / fps {
-        println!("note: the last key of --strength is at {end} s, and the motion ends at {length:.2} s: it is not reached");
+        println!(
+            "note: the last key of --strength is at {end} s, and the motion ends at {length:.2} s: it is not reached"
+        );
     }
     Ok(())
 }
@@ -280,7 +282,10 @@ fn strengths(option: &str, text: &str, attributes: &[AttributeMeta]) -> miette::
     let names = attributes.iter().map(|a| a.name).collect::<Vec<_>>().join(", ");
     let curve = |text: &str| {
         Curve::from_str(text.trim()).map_err(|cause| {
-            miette!(help = format!("or NAME=STRENGTH,...; the pack's attributes are: {names}"), "{option} {text}: not a strength: {cause}")
+            miette!(
+                help = format!("or NAME=STRENGTH,...; the pack's attributes are: {names}"),
+                "{option} {text}: not a strength: {cause}"
+            )
         })
     };
     let mut strengths = std::array::from_fn(|_| Curve::still(0.0));

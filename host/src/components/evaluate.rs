@@ -11,8 +11,8 @@ use crate::align::{AlignError, Ends};
 use crate::clip::Clip;
 use crate::measure::{Distance, Measurable, compare, compare_frames};
 use crate::pack::Metric;
-use crate::quality::Compared;
 use crate::pack::layout::row_major;
+use crate::quality::Compared;
 use crate::rig::Rig;
 
 /// Why an evaluation is impossible.

@@ -247,7 +247,9 @@ fn hold(range: [f32; 2], shapes: &[Vec<f64>], networks: &[(usize, Regressed)], n
         let at = |eighths: u8| middle + f32::from(eighths) / 8.0 * (end - middle);
         let held = [8, 7, 6, 5].map(at).into_iter().find(|strength| inside(*strength)).unwrap_or(at(4));
         if held != end {
-            notes.push(format!("the plausible strengths end at {held:.2}, not {end:.2}: a landmark goes where it is in no face"));
+            notes.push(format!(
+                "the plausible strengths end at {held:.2}, not {end:.2}: a landmark goes where it is in no face"
+            ));
         }
         held
     })

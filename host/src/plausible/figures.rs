@@ -14,7 +14,7 @@ const LEG: f64 = 0.20;
 /// Share of the frames that may be farther: single frames of a recording are wrong.
 const OUTLIERS: f64 = 0.02;
 /// Frames that stand for a set of motions where joints are compared.
-const FRAMES: usize = 400;
+const FRAMES: usize = 150;
 /// A joint may turn so much farther than in the training clips, rad.
 const TURNS: f64 = 0.52;
 /// A slider may go so much farther, as a share of its range there, and at least so far, m.

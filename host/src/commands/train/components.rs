@@ -196,7 +196,8 @@ fn why_not(trained: &Trained, report: &Report, to_style: &ToClip) -> Option<Stri
     }
     // The two clips may show different content, so it is enough that the components come nearer to the style's.
     let nearer = report.style_distance < trained.style_distance_before;
-    no_nearer("the restyled motion comes no nearer to the style clip", before, apart(&to_style.error)).filter(|_| !nearer)
+    no_nearer("the restyled motion comes no nearer to the style clip", before, apart(&to_style.error))
+        .filter(|_| !nearer)
 }
 
 fn recorded(trained: &Trained) -> Vec<Metric> {

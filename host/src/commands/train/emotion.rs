@@ -233,10 +233,15 @@ impl Args {
 /// Why the pack cannot be of use, if so: judged on the clips that it was trained on.
 fn why_not(training: &Report, distances: Option<&Distances>) -> Option<String> {
     let mut attributes = training.attributes.iter();
-    let by_chance = attributes.find_map(|a| by_chance(&format!("{} is not read from the training clips", a.attribute), a.pair_accuracy));
+    let by_chance = attributes
+        .find_map(|a| by_chance(&format!("{} is not read from the training clips", a.attribute), a.pair_accuracy));
     let apart = |distance: &Distance| [distance.cm, distance.degrees.all];
     let made = |d: &Distances| {
-        no_nearer("the motions made for the training clips come no nearer to these", apart(&d.identity), apart(&d.error))
+        no_nearer(
+            "the motions made for the training clips come no nearer to these",
+            apart(&d.identity),
+            apart(&d.error),
+        )
     };
     by_chance.or_else(|| distances.and_then(made))
 }

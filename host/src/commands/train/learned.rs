@@ -39,7 +39,9 @@ pub fn no_nearer(what: &str, before: Apart, after: Apart) -> Option<String> {
     let nearer = before.iter().zip(after).any(|(before, after)| after < *before);
     (!nearer).then(|| {
         let ([cm_before, before], [cm, degrees]) = (before, after);
-        format!("{what} than doing nothing: {cm:.2} against {cm_before:.2} cm, {degrees:.2} against {before:.2} degrees")
+        format!(
+            "{what} than doing nothing: {cm:.2} against {cm_before:.2} cm, {degrees:.2} against {before:.2} degrees"
+        )
     })
 }
 

@@ -136,11 +136,7 @@ fn why_not(judged: &Errors) -> Option<String> {
     if same(before) {
         return Some("the clips of the pairs are the same motion: there is nothing to learn".to_owned());
     }
-    no_nearer(
-        "the pack comes no nearer to its own training clips",
-        before,
-        [judged.error_cm, judged.degrees.error.all],
-    )
+    no_nearer("the pack comes no nearer to its own training clips", before, [judged.error_cm, judged.degrees.error.all])
 }
 
 /// Runs the command.
@@ -328,14 +324,7 @@ struct Summary<'a> {
 }
 
 impl<'a> Summary<'a> {
-    fn new(
-        args: &Args,
-        trained: &Trained,
-        report: &'a Report,
-        strengths: Plausible,
-        bytes: usize,
-        fps: f64,
-    ) -> Self {
+    fn new(args: &Args, trained: &Trained, report: &'a Report, strengths: Plausible, bytes: usize, fps: f64) -> Self {
         Self {
             pack: args.out.display().to_string(),
             bytes,

@@ -59,7 +59,11 @@ pub fn page(
         "Angles. The two clips need not show the same content, so the result need not come near the style clip",
     ));
     if let Some(found) = &to_style.quality {
-        page.table(&quality::table(found, ["content", "style", "result"], "What the eye sees first; content and result are the stored stream"));
+        page.table(&quality::table(
+            found,
+            ["content", "style", "result"],
+            "What the eye sees first; content and result are the stored stream",
+        ));
     }
     page.heading("How the learning went").chart(&Chart {
         caption: "Objective of style learning (content + style + smoothness, in squared deviations) over the steps of \

@@ -8,8 +8,8 @@ use kinesic_host::emotion::{Distances, HostEmotion, Trained};
 use kinesic_host::report::{Chart, Line, Report as Page, Table};
 use miette::IntoDiagnostic;
 
-use crate::commands::{angles, quality};
 use crate::commands::figure::{figure, percent};
+use crate::commands::{angles, quality};
 
 /// Strengths along a curve.
 const STEPS: usize = 41;

@@ -30,7 +30,9 @@ pub fn page(
     let largest = trained.faces.iter().enumerate().max_by_key(|(_, count)| **count).map_or(0, |(index, _)| index);
     let [low, high] = model.strength;
     let shown = [("weakest", low), ("middle", low.midpoint(high)), ("strongest", high)];
-    let shape = |(name, strength)| Some((format!("{name}, {}", figure(f64::from(strength), 2)), device.shape(largest, strength)?));
+    let shape = |(name, strength)| {
+        Some((format!("{name}, {}", figure(f64::from(strength), 2)), device.shape(largest, strength)?))
+    };
     page.figure(
         &faces(&shown.into_iter().filter_map(shape).collect::<Vec<_>>()),
         &format!(

@@ -27,7 +27,8 @@ pub fn page(
     let mechanics: Vec<_> = parts.iter().map(|parts| parts.mechanics).collect();
     page.heading("What it does");
     let rows = [("observed", &shown.clip), ("mechanics", &rig.clip(&mechanics, shown.clip.frame_time))];
-    let what = format!("Eight moments of {}, a clip without expression: the mechanics should look like it.", shown.name);
+    let what =
+        format!("Eight moments of {}, a clip without expression: the mechanics should look like it.", shown.name);
     super::figures(&mut page, &pack, &rows, &what)?;
     let row = |name: &str, of: fn(&Figures) -> f64| {
         let held_back = trained.held_back.as_ref().map_or_else(|| "-".to_owned(), |f| format!("{:.5}", of(f)));
