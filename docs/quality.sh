@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Prints the tables of docs/quality.md. About six minutes on two cores. Needs the real clips (KINESIC_DATA).
-# usage: docs/quality.sh [xia|swap|feet|live|strange|child|people|recognition|several]...   (default: all)
+# usage: docs/quality.sh [xia|swap|eye|strengths|feet|live|strange|child|people|recognition|several]...   (default: all)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 data=$(realpath "${KINESIC_DATA:-../shared/data}")
@@ -146,6 +146,43 @@ print(result["unfamiliar_percent"], result["styled"]["jerk_m_s3"] / result["sour
     done
 }
 
+eye_table() {
+    local clips=$data/xia style
+    for style in angry childlike depressed old proud sexy strutting; do
+        "$kinesic" train translate --pair "$clips/neutral_01_000.bvh" "$clips/${style}_01_000.bvh" --out "$work/$style.kin" --json >"$work/train"
+        "$kinesic" eval translate "$work/$style.kin" --pair "$clips/neutral_01_001.bvh" "$clips/${style}_01_001.bvh" --json >"$work/$style.eye"
+    done
+    echo
+    echo "What the eye sees first, take 001, mean of the 7 styles; feet free"
+    echo
+    python3 - "$work"/*.eye <<'PYTHON'
+import json, sys
+found = [json.load(open(path))["quality"] for path in sys.argv[1:]]
+mean = lambda of: sum(map(of, found)) / len(found)
+print("| motion | foot slide, cm/s | standing, % | steps a minute | jerk, m/s^3 | lean, degrees | posture, degrees |")
+print("|---|---|---|---|---|---|---|")
+for name in ["source", "target", "result"]:
+    keys = [("foot_slide_cm_s", 1), ("standing_percent", 0), ("steps_a_minute", 0), ("jerk_m_s3", 0), ("lean_degrees", 1)]
+    cells = [f"{mean(lambda q: q[name][key]):.{digits}f}" for key, digits in keys]
+    key = f"{name}_posture_degrees"
+    cells.append(f"{mean(lambda q: q[key]):.1f}" if key in found[0] else "-")
+    print(f"| {name} | " + " | ".join(cells) + " |")
+PYTHON
+}
+
+strengths_table() {
+    local clips=$data/xia style row=()
+    cargo build --release --locked -q -p kinesic-host --example plausible
+    for style in angry childlike depressed old proud sexy strutting; do
+        "$kinesic" train translate --pair "$clips/neutral_01_000.bvh" "$clips/${style}_01_000.bvh" --out "$work/$style.kin" --json >"$work/train"
+        row+=("$clips/neutral_01_000.bvh" "$clips/${style}_01_000.bvh" "$work/$style.kin")
+    done
+    echo
+    echo "Plausible strengths, from 0 to"
+    echo
+    "${kinesic%/*}/examples/plausible" "${row[@]}"
+}
+
 # child PERSON: trained on everybody else
 child() {
     local table=(--pairs "$data/pairs.tsv" --where style=child)
@@ -206,11 +243,13 @@ people_table() {
         END { printf "| **mean** | %.2f | %.2f | %.2f | %.2f | |\n", sum[1], sum[2], sum[3], sum[4] }' "$work/all"
 }
 
-for part in "${@:-xia swap feet live strange child people recognition several}"; do
+for part in "${@:-xia swap eye strengths feet live strange child people recognition several}"; do
     for table in $part; do
         case $table in
         xia) xia 000 001 ;;
         swap) xia 001 000 ;;
+        eye) eye_table ;;
+        strengths) strengths_table ;;
         feet) feet_table clip lock free ;;
         live) feet_table pack lock live free ;;
         strange) strange_table ;;

@@ -25,6 +25,7 @@ pub mod moves;
 pub mod own_body;
 pub mod pack;
 pub mod plain;
+pub mod plausible;
 pub mod prepare;
 pub mod quality;
 pub mod quantise;

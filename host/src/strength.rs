@@ -45,6 +45,11 @@ impl From<Controls<MAX_ROWS>> for Knobs {
 }
 
 impl Curve {
+    /// One strength throughout.
+    pub fn still(strength: f32) -> Self {
+        Self { keys: vec![(0.0, strength)] }
+    }
+
     /// The strength at a time of the clip, s.
     pub fn at(&self, seconds: f64) -> f32 {
         let next = self.keys.partition_point(|(time, _)| *time <= seconds);
@@ -69,6 +74,11 @@ impl Curve {
     pub fn range(&self) -> [f32; 2] {
         let strengths = || self.keys.iter().map(|(_, strength)| *strength);
         [strengths().fold(f32::INFINITY, f32::min), strengths().fold(f32::NEG_INFINITY, f32::max)]
+    }
+
+    /// Number of keys.
+    pub fn count(&self) -> usize {
+        self.keys.len()
     }
 
     /// The key whose time is the last, s.

@@ -61,3 +61,28 @@ fn attributes_are_asked_for_by_name_swept_and_held() {
     synth(folder.path(), "two.kin --strength swaying=-0.5 --to weary=7,swaying=0.5 --seconds 4 --out o.bvh --json");
     assert_eq!(first, std::fs::read(folder.path().join("o.bvh")).unwrap());
 }
+
+#[test]
+fn strengths_follow_keys_and_the_motion_lasts_to_the_last_one() {
+    let folder = folder();
+    let at = folder.path();
+    let report = synth(at, "two.kin --strength weary=0@1s,1@9s,swaying=0.5 --out o.bvh --json");
+    let [weary, swaying] = [0, 1].map(|index| report["attributes"][index].clone());
+    assert_eq!((weary["asked"].clone(), weary["keys"].as_u64()), (serde_json::json!([0.0, 1.0]), Some(2)));
+    assert_eq!((swaying["asked"].clone(), swaying["keys"].as_u64()), (serde_json::json!([0.5, 0.5]), Some(1)));
+    assert!((report["seconds"].as_f64().unwrap() - 9.0).abs() < 0.02, "{}", report["seconds"]);
+    // Two keys at the ends are what --to does.
+    let ends = |line: &str| {
+        synth(at, line);
+        std::fs::read(at.join("o.bvh")).unwrap()
+    };
+    let keyed = ends("one.kin --strength 0@0s,0.5@4s --seconds 4 --fps 32 --out o.bvh --json");
+    let swept = ends("one.kin --strength 0 --to 0.5 --seconds 4 --fps 32 --out o.bvh --json");
+    assert_eq!(keyed, swept);
+    std::fs::write(at.join("curve.csv"), "time,strength\n0,0\n4,0.5\n").unwrap();
+    assert_eq!(ends("one.kin --strength @curve.csv --seconds 4 --fps 32 --out o.bvh --json"), keyed);
+    assert_eq!(
+        ends("two.kin --strength weary=@curve.csv,swaying=0 --seconds 4 --fps 32 --out o.bvh --json"),
+        ends("two.kin --strength weary=0@0s,0.5@4s --seconds 4 --fps 32 --out o.bvh --json")
+    );
+}

@@ -112,7 +112,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     };
     let preview = PackFile::from_bytes(&trained.model.pack(&rig, &provenance));
     trained.model.strength =
-        plausible(&preview.pack().into_diagnostic()?, &rig, &[&neutral], &[&weary]).into_diagnostic()?;
+        plausible(&preview.pack().into_diagnostic()?, &rig, &[&neutral], &[&weary]).into_diagnostic()?.range();
     let bytes = trained.model.pack(&rig, &provenance);
     let path = |name: &str| args.out.join(name);
     write_whole(&path("weary.kin"), &bytes)?;

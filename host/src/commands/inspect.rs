@@ -16,6 +16,7 @@ use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
 
 use super::clips::Reading;
+use super::figure::figure;
 use super::output::print_json;
 use super::robot::table;
 use super::suggest;
@@ -158,7 +159,7 @@ fn clip(args: &Args, options: &clip::ReadOptions, clip: &Clip) -> miette::Result
     let layout =
         map.as_ref().map_or("unknown names: --suggest-map makes a skeleton map, --map takes it", JointMap::layout);
     println!("skeleton   {} joints, {layout}, about {:.2} m from pelvis chain and legs", s.joints, s.height_m);
-    println!("height     joints between {:.2} m and {:.2} m", s.vertical_m[0], s.vertical_m[1]);
+    println!("height     joints between {} m and {} m", figure(s.vertical_m[0], 2), figure(s.vertical_m[1], 2));
     println!("joints     {}", line(&report.joint_names.join(", ")));
     for note in &s.notes {
         println!("note: {}", line(note));
@@ -261,7 +262,7 @@ fn pack(path: &Path, json: bool) -> miette::Result<()> {
             println!("trained on {} (sha256 {})", line(&input.path), line(&digest));
         }
         for metric in &provenance.metrics {
-            println!("           {:<24} {:.2}", line(&metric.name), metric.value);
+            println!("           {:<24} {}", line(&metric.name), figure(metric.value, 2));
         }
         for note in &provenance.notes {
             println!("note: {}", line(note));

@@ -16,6 +16,7 @@ mod eval;
 mod export;
 mod expression;
 mod face;
+mod figure;
 mod guard;
 mod inspect;
 mod limits;
@@ -26,6 +27,7 @@ mod origin;
 mod output;
 mod pictures;
 mod precision;
+mod quality;
 mod quantize;
 mod robot;
 mod score;
@@ -41,7 +43,7 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 ///
 /// Without a subcommand the demo runs: two made-up manners of walking, a trained translator, and a walk that it has not seen.
 #[derive(Debug, Parser)]
-#[command(name = "kinesic", version, after_help = EXAMPLES)]
+#[command(name = "kinesic", version, after_help = format!("{EXAMPLES}\n\n{}", train::CHOOSE))]
 pub struct Cli {
     #[command(subcommand)]
     command: Option<Command>,

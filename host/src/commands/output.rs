@@ -12,6 +12,7 @@ use kinesic_host::robot::Machine;
 use kinesic_host::{files, plain};
 use miette::{IntoDiagnostic, WrapErr, miette};
 use serde::Serialize;
+use serde_json::Value;
 
 use super::clips::NOTES;
 use super::print;
@@ -136,9 +137,20 @@ pub fn print_json(value: &impl Serialize) -> miette::Result<()> {
     {
         object.insert("reading".into(), notes.into());
     }
+    no_minus_zero(&mut value);
     let text = serde_json::to_string_pretty(&value).into_diagnostic().wrap_err("cannot write JSON")?;
     print::raw(&format!("{}\n", plain::json(&text)));
     Ok(())
+}
+
+/// Nothing is minus zero.
+fn no_minus_zero(value: &mut Value) {
+    match value {
+        Value::Number(number) if number.as_f64() == Some(0.0) && number.is_f64() => *value = 0.0.into(),
+        Value::Array(list) => list.iter_mut().for_each(no_minus_zero),
+        Value::Object(object) => object.values_mut().for_each(no_minus_zero),
+        _ => {}
+    }
 }
 
 /// A spinner on standard error, silent where nobody watches.

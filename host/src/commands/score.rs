@@ -11,6 +11,7 @@ use miette::{IntoDiagnostic, WrapErr};
 use serde::Serialize;
 
 use super::clips::{Reading, clip_paths};
+use super::figure::figure;
 use super::output::{print_json, spinner};
 
 /// Say how strongly motions show an emotion
@@ -81,8 +82,12 @@ fn print(scores: &Scores) {
         let cell = |(index, mean): (usize, &f64)| {
             let of = || clip.motions.iter().map(move |row| row[index]);
             let (low, high) = (of().fold(f64::INFINITY, f64::min), of().fold(f64::NEG_INFINITY, f64::max));
-            let range = if clip.motions.len() > 1 { format!(" ({low:.2} to {high:.2})") } else { String::new() };
-            format!("{:>24}", format!("{mean:.3}{range}"))
+            let range = if clip.motions.len() > 1 {
+                format!(" ({} to {})", figure(low, 2), figure(high, 2))
+            } else {
+                String::new()
+            };
+            format!("{:>24}", format!("{}{range}", figure(*mean, 3)))
         };
         let cells: Vec<String> = clip.strength.iter().enumerate().map(cell).collect();
         let none = || format!("{:>24}", "no whole stride");

@@ -12,6 +12,7 @@ use crate::clip::Clip;
 use crate::measure::{Distance, Measurable, compare, compare_frames};
 use crate::pack::Metric;
 use crate::pack::layout::row_major;
+use crate::quality::Compared;
 use crate::rig::Rig;
 
 /// Why an evaluation is impossible.
@@ -76,24 +77,28 @@ pub struct ToClip {
     pub error: Distance,
     /// At strength 0: doing nothing.
     pub identity: Distance,
+    /// Feet, jerk and posture: strength 0, strength 1, the clip; absent for machines.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub quality: Option<Compared>,
 }
 
 /// Plays the stored stream with and without the style and compares both with a clip on the rig at [`FRAME_RATE`].
 pub fn to_clip(pack: &Pack, rig: &Rig, clip: &Clip) -> Result<ToClip, EvaluateError> {
     let (target, [styled, plain]) = (Measurable::new(rig, clip), streams(pack, rig)?);
-    let to_target = |motion| compare(rig, motion, &target, Ends::Closed);
-    Ok(ToClip { error: to_target(&styled)?, identity: to_target(&plain)? })
+    let to_target = |motion: &Clip| compare(rig, &Measurable::new(rig, motion), &target, Ends::Closed);
+    let quality = rig.frames().travels().then(|| Compared::of(&rig.map, &plain, &styled, clip));
+    Ok(ToClip { error: to_target(&styled)?, identity: to_target(&plain)?, quality })
 }
 
 /// The stored stream at strength 1 and at strength 0.
-fn streams(pack: &Pack, rig: &Rig) -> Result<[Measurable; 2], EvaluateError> {
+fn streams(pack: &Pack, rig: &Rig) -> Result<[Clip; 2], EvaluateError> {
     if HostComponents::load(pack)?.frames() == 0 {
         return Err(EvaluateError::NoStream);
     }
     let mut settings = Settings::default();
-    let styled = Measurable::new(rig, &play_stored(pack, rig, &settings)?);
+    let styled = play_stored(pack, rig, &settings)?;
     settings.controls.strength = 0.0;
-    Ok([styled, Measurable::new(rig, &play_stored(pack, rig, &settings)?)])
+    Ok([styled, play_stored(pack, rig, &settings)?])
 }
 
 /// Names under which the training records what [`evaluate`] cannot measure.
@@ -109,7 +114,7 @@ pub const RECORDED: [&str; 6] = [
 /// Plays the stored stream and measures it.
 pub fn evaluate(pack: &Pack, rig: &Rig, recorded: &[Metric]) -> Result<Report, EvaluateError> {
     let components = HostComponents::load(pack)?;
-    let [styled, plain] = streams(pack, rig)?;
+    let [styled, plain] = streams(pack, rig)?.map(|clip| Measurable::new(rig, &clip));
     let find = |name: &'static str| {
         recorded.iter().find(|m| m.name == name).map(|m| m.value).ok_or(EvaluateError::NoMetric { name })
     };

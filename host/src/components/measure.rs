@@ -19,16 +19,6 @@ pub fn jerk(positions: &[f64], channels: usize, fps: f64) -> f64 {
     sum / count.max(1) as f64
 }
 
-/// Fastest joint of positions `[frames x 3 joints]`, m per frame.
-pub fn top_speed(positions: &[f64], channels: usize) -> f64 {
-    let frames = positions.chunks_exact(channels.max(1));
-    let steps = frames.clone().zip(frames.skip(1)).flat_map(|(a, b)| {
-        let joints = a.as_chunks::<3>().0.iter().zip(b.as_chunks::<3>().0);
-        joints.map(|(a, b)| a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt())
-    });
-    steps.fold(0.0, f64::max)
-}
-
 /// `|C_C - C_X| / |C_C|`.
 pub fn content_distance(content: &Mat<f64>, learned: &Mat<f64>) -> f64 {
     (content - learned).norm_l2() / content.norm_l2().max(1e-300)

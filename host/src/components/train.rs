@@ -1,26 +1,28 @@
 //! From two clips to a model.
 
 use faer::Mat;
+use kinesic::Pack;
 use kinesic::model::LoadError;
 
 use super::count::{Choice, choose_kept, fits, kept};
 use super::factor::{Factors, column, column_mut, flat, unflat};
 use super::learn::{Learned, Optimiser, learn, noise};
 use super::matrix::{FRAME_RATE, Motion};
-use super::measure::{content_distance, style_distance, top_speed};
+use super::measure::{content_distance, style_distance};
 use super::model::ComponentsModel;
 use super::objective::{Objective, Terms, Weights};
-use super::play::{Settings, play_stored};
+use super::play::{Settings, play, play_stored};
 use super::sparse::{Sparse, Sparsity};
 use crate::align::{AlignError, Ends};
 use crate::clip::Clip;
 use crate::measure::{Degrees, Measurable, compare};
 use crate::pack::{PackFile, Provenance};
+use crate::plausible::{Bounds, Plausible};
 use crate::rig::{HostFrame, Rig};
 use crate::step_cache::{StepCache, Unreadable};
 
-/// At a plausible strength the fastest joint is at most so many times faster than the fastest of the training clips.
-const SPEED_UP: f64 = 1.5;
+/// Largest strength that is tried.
+const LIMIT: f64 = 2.0;
 
 /// What to train.
 #[derive(Clone, Debug)]
@@ -99,6 +101,8 @@ pub enum TrainError {
 pub struct Trained {
     /// The model.
     pub model: ComponentsModel,
+    /// Strengths that are plausible, and what ends them.
+    pub strengths: Plausible,
     /// Number of components, and why.
     pub choice: Choice,
     /// Sparse components of the content.
@@ -111,6 +115,8 @@ pub struct Trained {
     pub reconstruction_error: f64,
     /// `|Gram(C_S) - Gram(C_X)| / |Gram(C_S)|`.
     pub style_distance: f64,
+    /// `|Gram(C_S) - Gram(C_C)| / |Gram(C_S)|`: doing nothing.
+    pub style_distance_before: f64,
     /// `|C_C - C_X| / |C_C|`.
     pub content_distance: f64,
     /// From the content to the style, over frames matched by dynamic time warping.
@@ -182,9 +188,9 @@ pub fn train_kept(
         track: track(&rig.frames_of(clips[0])),
         strength: [0.0, 1.0],
     };
-    let [speed, style_speed] = [&locals, &style_locals].map(|l| top_speed(&l.positions, l.channels()));
-    model.strength[1] = plausible(&model, rig, locals.channels(), SPEED_UP * speed.max(style_speed));
     let file = PackFile::from_bytes(&model.pack(rig, &Provenance::default()));
+    let strengths = plausible(&file.pack()?, rig, clips)?;
+    model.strength = strengths.range();
     let result = play_stored(&file.pack()?, rig, &Settings::default())?;
     let target = Measurable::new(rig, clips[1]);
     let to_style =
@@ -192,10 +198,12 @@ pub fn train_kept(
     Ok(Trained {
         reconstruction_error: own.factors.error(content.values.as_ref()),
         style_distance: style_distance(&wanted.factors.components, &learned.components),
+        style_distance_before: style_distance(&wanted.factors.components, &own.factors.components),
         content_distance: content_distance(&own.factors.components, &learned.components),
         degrees_before: to_style(clips[0])?,
         degrees_after: to_style(&result)?,
         model,
+        strengths,
         choice,
         content: own,
         style: wanted,
@@ -287,10 +295,15 @@ fn check(options: &TrainOptions) -> Result<(), TrainError> {
     }
 }
 
-/// The largest strength of 1, 1.25, ... 2 at which no joint is faster than `fastest`, m per frame, heading-local.
-fn plausible(model: &ComponentsModel, rig: &Rig, channels: usize, fastest: f64) -> f64 {
-    let slow = |strength: &f64| top_speed(&rig.positions(&composed(model, *strength)), channels) <= fastest;
-    [1.25, 1.5, 1.75, 2.0].into_iter().take_while(slow).last().unwrap_or(1.0)
+/// Strengths at which the stored stream and the content, restyled live, stay within what both clips do.
+fn plausible(pack: &Pack, rig: &Rig, [content, style]: [&Clip; 2]) -> Result<Plausible, LoadError> {
+    let bounds = Bounds::new(rig, std::iter::once(content), std::iter::once(style));
+    let played = |strength: f64| {
+        let mut settings = Settings::default();
+        settings.controls.strength = strength as f32;
+        Ok(vec![play_stored(pack, rig, &settings)?, play(pack, rig, content, &settings)?])
+    };
+    bounds.largest(rig, LIMIT, played)
 }
 
 /// Path of the content: travel in the heading's axes and turn, since the frame before.

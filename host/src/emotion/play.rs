@@ -54,26 +54,37 @@ pub fn pose(emotion: &HostEmotion, rig: &DeviceRig, state: &mut HostState, dt: f
 
 /// Plays from the origin, facing +Z.
 pub fn play(pack: &Pack, settings: &Settings) -> Result<Played, RigError> {
+    let between = |frame: usize, last: usize| {
+        let part = frame as f32 / last as f32;
+        std::array::from_fn(|at| settings.from[at] + part * (settings.to[at] - settings.from[at]))
+    };
+    play_at(pack, settings.fps, settings.seconds, &between)
+}
+
+/// The same with the strengths that a function of the frame and the last one says.
+pub fn play_at(
+    pack: &Pack,
+    fps: f64,
+    seconds: Option<f64>,
+    strengths: &dyn Fn(usize, usize) -> Strengths,
+) -> Result<Played, RigError> {
     let (emotion, rig) = (HostEmotion::load(pack)?, Rig::from_pack(pack)?);
     let mut state = Box::new(HostState::new());
-    state.strength = settings.from;
+    state.strength = strengths(0, 1);
     emotion.change(&mut state);
     let first = (state.playing().unwrap_or_default(), state.seconds());
     let rounds = if emotion.meta().cycle { ROUNDS } else { 1.0 };
-    let seconds = settings.seconds.unwrap_or_else(|| f64::from(rounds * first.1));
-    let last = (seconds * settings.fps).round().clamp(1.0, MOST_FRAMES) as usize;
+    let seconds = seconds.unwrap_or_else(|| f64::from(rounds * first.1));
+    let last = (seconds * fps).round().clamp(1.0, MOST_FRAMES) as usize;
     let mut frames = Vec::with_capacity(last + 1);
     for frame in 0..=last {
-        let part = frame as f32 / last as f32;
-        for ((now, from), to) in state.strength.iter_mut().zip(settings.from).zip(settings.to) {
-            *now = from + part * (to - from);
-        }
+        state.strength = strengths(frame, last);
         let mut next = HostFrame::new();
-        emotion.step(&mut state, (1.0 / settings.fps) as f32, &mut next);
+        emotion.step(&mut state, (1.0 / fps) as f32, &mut next);
         frames.push(next);
     }
     let strength = [first.0, state.playing().unwrap_or_default()];
-    let clip = rig.clip_of(&frames, 1.0 / settings.fps);
+    let clip = rig.clip_of(&frames, 1.0 / fps);
     Ok(Played { clip, strength, round: [first.1, state.seconds()] })
 }
 

@@ -7,12 +7,15 @@ use super::features::Projection;
 use super::keyframes::{Curve, Keyframes};
 use super::model::{Attribute, EmotionModel, Reading};
 use super::motions::{Example, Motion, features, motions, pairs, takes};
+use super::play::{Settings, Strengths, play};
 use super::segment::{Cut, FRAME_RATE, Segment};
 use super::{MAX_KEYS, MAX_WIDTH};
 use crate::clip::Clip;
 use crate::learn::samples::add_scaled;
 use crate::learn::{RankOptions, RegressOptions, Samples, choose_cost, rank, regress};
-use crate::rig::Rig;
+use crate::pack::{PackFile, Provenance};
+use crate::plausible::Bounds;
+use crate::rig::{Rig, RigError};
 use crate::vector::line;
 use kinesic::model::ATTRIBUTES;
 
@@ -89,6 +92,9 @@ pub enum TrainError {
         /// Which attribute.
         attribute: String,
     },
+    /// The device's code refuses the model.
+    #[error("the device refuses the model: {0}")]
+    Refused(#[from] RigError),
     /// The motions have nothing to do with the labels.
     #[error("the scores do not rise with {attribute:?}: the labels may be in the wrong column or order")]
     Unrelated {
@@ -190,7 +196,7 @@ pub fn train(
     let columns = |attribute: usize| inputs.iter().map(move |row| row[attribute]).collect::<Vec<f64>>();
     let plain = |values: Vec<f64>| quantiles(values).map(|x| x as f32);
     let back = material.back(made.scale);
-    let model = EmotionModel {
+    let mut model = EmotionModel {
         motion: motion.to_owned(),
         frame_rate: FRAME_RATE as f32,
         attributes: attributes
@@ -217,6 +223,7 @@ pub fn train(
         levers: material.levers.clone(),
         network,
     };
+    notes.extend(hold(&mut model, &material.rig, &motions)?);
     Ok(Trained {
         keyframe_error: keyframe_error(&motions, &keyframes),
         network_error: material.error(&made, &model, &inputs),
@@ -365,6 +372,51 @@ fn quantiles(mut values: Vec<f64>) -> [f64; 2] {
     let [low, high] =
         [OUTSIDE, 1.0 - OUTSIDE].map(|share| values.get((share * last).round() as usize).copied().unwrap_or_default());
     if high - low > 1e-3 { [low, high] } else { [low - 1e-3, high + 1e-3] }
+}
+
+/// Plays the ends of every range, the other strengths in the middle of theirs, and brings in those at which the motion leaves what the training
+/// motions do. Says which, and where it does so between the ends.
+fn hold(model: &mut EmotionModel, rig: &Rig, motions: &[Motion]) -> Result<Vec<String>, RigError> {
+    let clip = |motion: &Motion| {
+        let start = motion.segment.start;
+        motion.example.clip.slice(start..start + motion.segment.frames())
+    };
+    let clips: Vec<Clip> = motions.iter().map(clip).collect();
+    let bounds = Bounds::new(rig, clips.iter(), std::iter::empty());
+    let file = PackFile::from_bytes(&model.pack(rig, &Provenance::default()));
+    let pack = file.pack()?;
+    let mut middle = Strengths::default();
+    middle.iter_mut().zip(&model.attributes).for_each(|(to, a)| *to = a.strength[0].midpoint(a.strength[1]));
+    let mut notes = Vec::new();
+    for (index, attribute) in model.attributes.iter_mut().enumerate() {
+        let once = |strength: f64| {
+            let mut strengths = middle;
+            strengths[index] = strength as f32;
+            let still = Settings { from: strengths, to: strengths, fps: FRAME_RATE, seconds: Some(0.0) };
+            let seconds = f64::from(play(&pack, &still)?.round[0]);
+            Ok::<_, RigError>(play(&pack, &Settings { seconds: Some(seconds), ..still })?.clip)
+        };
+        for (at, which) in ["lowest", "highest"].into_iter().enumerate() {
+            let asked = attribute.strength[at];
+            let (found, broken) = bounds.end(rig, [middle[index], asked].map(f64::from), once)?;
+            if let Some(broken) = broken {
+                attribute.strength[at] = found as f32;
+                notes.push(format!(
+                    "{}: the {which} plausible strength is {found:.2}, not {asked:.2} as of the motions: at that, {broken}",
+                    attribute.name
+                ));
+            }
+        }
+        // A range has two ends, so what breaks between them can only be said.
+        let [low, high] = attribute.strength.map(f64::from);
+        for quarter in [1.0, 2.0, 3.0] {
+            let strength = low + quarter / 4.0 * (high - low);
+            if let Some(broken) = bounds.broken(rig, &[once(strength)?]) {
+                notes.push(format!("{}: at strength {strength:.2}, {broken}", attribute.name));
+            }
+        }
+    }
+    Ok(notes)
 }
 
 /// Shortest and longest time from one keyframe to the next.

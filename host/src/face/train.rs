@@ -18,6 +18,8 @@ use crate::learn::{Clusters, RegressOptions, Regressed, Samples, k_means, regres
 const NEEDED: usize = 10;
 /// Share of the training faces that lies below and above the plausible strengths.
 const OUTSIDE: f64 = 0.01;
+/// A landmark may be so much outside the range that it has in the training faces, as a share of it.
+const WIDER: f64 = 0.1;
 
 /// What to train.
 #[derive(Clone, Debug)]
@@ -139,13 +141,14 @@ pub fn train(faces: &[Face], attribute: &str, options: &TrainOptions) -> Result<
         (members.len(), regress(&Samples::new(&inputs, 1), &Samples::new(&outputs, FEATURES), &settings))
     };
     let networks: Vec<(usize, Regressed)> = (0..clusters.count()).into_par_iter().map(network).collect();
+    let strength = hold(plausible(&strengths), &shapes, &networks, &mut notes);
     let model = |((middle, scorer), (_, network)): ((&Vec<f64>, &Scorer), &(usize, Regressed))| {
         cluster_model(middle, scorer, network)
     };
     Ok(Trained {
         model: FaceModel {
             attribute: attribute.to_owned(),
-            strength: plausible(&strengths),
+            strength,
             clusters: clusters.middles.iter().zip(&scorers).zip(&networks).map(model).collect(),
         },
         faces: networks.iter().map(|(count, _)| *count).collect(),
@@ -219,6 +222,36 @@ fn plausible(strengths: &[f64]) -> [f32; 2] {
     let last = sorted.len().saturating_sub(1) as f64;
     [OUTSIDE, 1.0 - OUTSIDE]
         .map(|share| sorted.get((share * last).round() as usize).copied().unwrap_or_default() as f32)
+}
+
+/// Plays the ends of the range in every cluster, and brings an end in by eighths of the way to the middle, as long as a landmark leaves the
+/// range that it has in the training faces. Half of the way stays.
+fn hold(range: [f32; 2], shapes: &[Vec<f64>], networks: &[(usize, Regressed)], notes: &mut Vec<String>) -> [f32; 2] {
+    let mut seen = vec![[f64::INFINITY, f64::NEG_INFINITY]; FEATURES];
+    for shape in shapes {
+        seen.iter_mut().zip(shape).for_each(|([low, high], x)| (*low, *high) = (low.min(*x), high.max(*x)));
+    }
+    let inside = |strength: f32| {
+        let within = |(x, [low, high]): (f64, &[f64; 2])| {
+            let past = WIDER * (high - low);
+            (low - past..=high + past).contains(&x)
+        };
+        let cluster = |(_, regressed): &(usize, Regressed)| {
+            regressed.network.apply(&[f64::from(strength)]).into_iter().zip(&seen).all(within)
+        };
+        networks.iter().all(cluster)
+    };
+    let middle = range[0].midpoint(range[1]);
+    range.map(|end| {
+        let at = |eighths: u8| middle + f32::from(eighths) / 8.0 * (end - middle);
+        let held = [8, 7, 6, 5].map(at).into_iter().find(|strength| inside(*strength)).unwrap_or(at(4));
+        if held != end {
+            notes.push(format!(
+                "the plausible strengths end at {held:.2}, not {end:.2}: a landmark goes where it is in no face"
+            ));
+        }
+        held
+    })
 }
 
 fn cluster_model(middle: &[f64], scorer: &Scorer, regressed: &Regressed) -> ClusterModel {

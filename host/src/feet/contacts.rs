@@ -51,11 +51,16 @@ impl Foot {
         (0..clip.frames()).map(at).collect()
     }
 
-    /// Length of the leg over that of an adult: thresholds are so many times as large.
-    pub fn size(&self, skeleton: &Skeleton) -> f64 {
+    /// Length of the leg, m.
+    pub fn length(&self, skeleton: &Skeleton) -> f64 {
         let rest = skeleton.rest_positions();
         let [hip, knee, ankle] = self.leg.map(|joint| rest[joint]);
-        ((knee - hip).norm() + (ankle - knee).norm()) / LEG
+        (knee - hip).norm() + (ankle - knee).norm()
+    }
+
+    /// Length of the leg over that of an adult: thresholds are so many times as large.
+    pub fn size(&self, skeleton: &Skeleton) -> f64 {
+        self.length(skeleton) / LEG
     }
 
     /// Whether it stands, per frame of its path: low and slow, with hysteresis. `size` is that of the body, 1 = an adult.

@@ -4,7 +4,6 @@
 //! |---|---|
 //! | `page` | title, paragraphs, tables, charts, figures, as HTML |
 //! | `chart` | curves as SVG |
-//! | `stick_figures` | figures of lines, of people and robots, as SVG |
 //! | `faces` | faces from their landmarks as SVG |
 //! | [`latency`] | what a frame costs on six cores |
 
@@ -12,9 +11,7 @@ mod chart;
 mod faces;
 pub mod latency;
 mod page;
-mod stick_figures;
 
 pub use chart::{Chart, Line};
 pub use faces::faces;
 pub use page::{Report, Table};
-pub use stick_figures::{robot_figures, stick_figures};

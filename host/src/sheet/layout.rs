@@ -268,6 +268,9 @@ mod tests {
     use super::*;
     use crate::clip::JointMap;
     use crate::gait::{Manner, walk};
+    use crate::rig::frame_of;
+    use crate::robot::look::Look;
+    use crate::robot::{Defaults, Machine, ServoTable};
 
     fn actor(name: &str, seconds: f64) -> Actor {
         let clip = walk(&Manner::NEUTRAL, seconds, 30.0, 0.0, 1);
@@ -319,5 +322,21 @@ mod tests {
         assert!(!first.is_empty());
         let way = film.cell.scale * (walker.figure(18).place.z - walker.figure(15).place.z);
         assert!(way > 1.0 && next.iter().any(|x| (x + way - first[0]).abs() < 0.5), "{way} {first:?} {next:?}");
+    }
+
+    #[test]
+    fn a_small_robot_fills_its_cell_and_its_slider_slides() {
+        let table = "[[servo]]\nname = \"lift\"\nunit = \"mm\"\nmin = 0\nmax = 80\n[[servo]]\nname = \"tilt\"\nparent = \"lift\"\nunit = \"deg\"\nmin = -90\nmax = 90\naxis = [0, 1, 0]\n";
+        let machine = Machine::of_table(&ServoTable::parse(table).unwrap(), 50.0, Defaults::default()).unwrap();
+        let frames: Vec<_> = (0..8).map(|at| frame_of(&[0.01 * f64::from(at), 0.1 * f64::from(at), 0.0])).collect();
+        let clip = machine.rig.clip_of(&frames, 0.02);
+        let look = Look::of_machine(&machine);
+        let [low, high] = [0, 7].map(|at| look.sticks(clip.coordinates(at).unwrap())[1].0.y);
+        assert!((high - low - 0.07).abs() < 1e-6, "{low} {high}");
+        let actor = Actor::machine("move", clip, look.clone());
+        let drawing = sheet(&[(actor, (0..8).collect())], View::Oblique, 110.0).unwrap();
+        let lines = drawing.svg().matches("stroke-width=\"1.8\"").count();
+        assert_eq!(lines, 8 * look.sticks(&[]).len());
+        assert!((110..=190).contains(&drawing.height), "{}", drawing.height);
     }
 }

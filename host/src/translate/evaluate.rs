@@ -12,6 +12,7 @@ use crate::clip::Clip;
 use crate::measure::turns::Turns;
 use crate::measure::{Degrees, Distance, Measurable, compare};
 use crate::pack::Baselines;
+use crate::quality::Compared;
 use crate::rig::Rig;
 
 /// Why an evaluation is impossible.
@@ -123,6 +124,9 @@ pub struct PairReport {
     /// Its errors.
     #[serde(flatten)]
     pub errors: Errors,
+    /// Feet, jerk and posture of source, result and target; absent for machines.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub quality: Option<Compared>,
 }
 
 /// Means over the pairs, and every pair.
@@ -131,6 +135,9 @@ pub struct Report {
     /// Means of the pairs.
     #[serde(flatten)]
     pub errors: Errors,
+    /// Means of the pairs: feet, jerk and posture of source, result and target; absent for machines.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub quality: Option<Compared>,
     /// Every pair.
     pub pairs: Vec<PairReport>,
 }
@@ -154,11 +161,14 @@ pub fn evaluate(
     turns: Option<&Turns>,
     pairs: &[NamedPair],
 ) -> Result<Report, EvaluateError> {
-    let (mut closed, mut open) = (Vec::new(), Vec::new());
+    let (mut closed, mut open, mut quality) = (Vec::new(), Vec::new(), Vec::new());
+    let body = rig.frames().travels();
     for pair in pairs {
         let source = Measurable::new(rig, pair.source.1);
         let target = Measurable::new(rig, pair.target.1);
-        let styled = Measurable::new(rig, &play(pack, rig, pair.source.1, &Settings::default())?);
+        let styled = play(pack, rig, pair.source.1, &Settings::default())?;
+        quality.push(body.then(|| Compared::of(&rig.map, pair.source.1, &styled, pair.target.1)));
+        let styled = Measurable::new(rig, &styled);
         let offset = Measurable {
             positions: baseline::apply_offset(baselines, &source.positions),
             rotations: turns.map_or_else(|| source.rotations.clone(), |t| t.offset(&source.rotations)),
@@ -176,10 +186,13 @@ pub fn evaluate(
     }
     let mean = |all: &[Distances]| [0, 1, 2, 3].map(|model| Distance::mean(all.iter().map(move |d| &d[model])));
     let errors = Errors::new(mean(&closed), mean(&open), turns.is_some());
-    let report = |(pair, (closed, open)): (&NamedPair, (Distances, Distances))| PairReport {
+    let mean = Compared::mean(quality.iter().flatten());
+    let report = |((pair, quality), (closed, open)): ((&NamedPair, _), (Distances, Distances))| PairReport {
         source: pair.source.0.to_owned(),
         target: pair.target.0.to_owned(),
         errors: Errors::new(closed, open, turns.is_some()),
+        quality,
     };
-    Ok(Report { errors, pairs: pairs.iter().zip(closed.into_iter().zip(open)).map(report).collect() })
+    let pairs = pairs.iter().zip(quality).zip(closed.into_iter().zip(open)).map(report).collect();
+    Ok(Report { errors, quality: mean, pairs })
 }

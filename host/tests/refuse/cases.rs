@@ -85,6 +85,8 @@ pub const CASES: &[(&str, &str)] = &[
     ("synth moods.kin --strength angry=1 --out o.bvh", "weary, swaying"),
     ("synth moods.kin --strength weary=1,swaying --out o.bvh", "NAME=STRENGTH"),
     ("synth moods.kin --strength weary=1 --to weary --out o.bvh", "--to"),
+    ("synth moods.kin --strength weary=0@0s,1@x --out o.bvh", "key 2, '1@x'"),
+    ("synth moods.kin --strength weary=0@0s,1@2s --to weary=1 --out o.bvh", "leave --to out"),
     ("synth moods.kin --strength weary=1 --fps 0 --out o.bvh", "1 to 1000"),
     ("synth moods.kin --strength weary=1 --seconds 0 --out o.bvh", "--seconds"),
     ("synth moods.kin --strength weary=1 --seconds 1e9 --out o.bvh", "3600"),

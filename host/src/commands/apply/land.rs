@@ -7,12 +7,14 @@ use kinesic_host::clip::{Clip, JointMap};
 use kinesic_host::feet::{self, IN_STEP, OUT_OF_STEP};
 use kinesic_host::own_body::OwnBody;
 use kinesic_host::prepare::Source;
-use kinesic_host::quality::{self, Quality};
+use kinesic_host::quality::{Quality, measure};
 use kinesic_host::rig::Rig;
 use miette::miette;
 use serde::Serialize;
 
 use super::Played;
+use crate::commands::figure::figure;
+use crate::commands::quality;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum On {
@@ -126,7 +128,7 @@ pub struct Landed<'a> {
 impl Landed<'_> {
     /// Quality of the clip and of what is written.
     pub fn judge(&self, written: &Clip) -> Judged {
-        let quality = |clip: &Clip| self.map.map(|map| quality::measure(clip, map));
+        let quality = |clip: &Clip| self.map.map(|map| measure(clip, map));
         Judged { source: self.from.and_then(quality), styled: quality(written), step: self.step, feet: self.feet }
     }
 }
@@ -142,17 +144,12 @@ impl Judged {
 
     /// Prints the table, and what is wrong with the feet.
     pub fn print(&self) {
-        if self.styled.is_some() {
-            println!("            foot slide, cm/s   standing, %   steps a minute   jerk, m/s^3");
-        }
         let rows = self.source.iter().map(|q| ("source", q)).chain(self.styled.iter().map(|q| ("styled", q)));
-        for (name, q) in rows {
-            println!(
-                "{name:<10} {:>17.1} {:>13.0} {:>16.0} {:>13.1}",
-                q.foot_slide_cm_s, q.standing_percent, q.steps_a_minute, q.jerk_m_s3
-            );
+        match &rows.collect::<Vec<_>>()[..] {
+            [] => {}
+            rows => quality::print(rows),
         }
-        let side = |(name, kept): (&str, Option<f64>)| kept.map(|kept| format!("{name} {kept:.2}"));
+        let side = |(name, kept): (&str, Option<f64>)| kept.map(|kept| format!("{name} {}", figure(kept, 2)));
         let sides: Vec<String> =
             ["left", "right"].into_iter().zip(self.step.unwrap_or_default()).filter_map(side).collect();
         if !sides.is_empty() {

@@ -12,6 +12,7 @@ use serde::Serialize;
 use crate::commands::angles;
 use crate::commands::clips::Reading;
 use crate::commands::output::print_json;
+use crate::commands::quality;
 
 /// Measure a pack of style components
 ///
@@ -64,11 +65,15 @@ pub fn run(args: &Args) -> miette::Result<()> {
     println!("change: RMS joint distance, cm; {}", angles::CAPTION);
     println!("{:>10.2}   cm", report.change.cm);
     angles::print(&[("change", Some(&report.change.degrees))]);
-    if let Some(ToClip { error, identity }) = &target {
+    if let Some(ToClip { error, identity, quality: found }) = &target {
         println!();
         println!("to the target: aligned RMS joint distance, cm; {}", angles::CAPTION);
         println!("{:>10.2}{:>10.2}   cm", identity.cm, error.cm);
         angles::print(&[("plain", Some(&identity.degrees)), ("restyled", Some(&error.degrees))]);
+        if let Some(found) = found {
+            println!();
+            quality::compared(found, ["plain", "target", "restyled"], "stored stream");
+        }
     }
     Ok(())
 }

@@ -12,7 +12,9 @@ use serde::Serialize;
 
 use crate::commands::angles;
 use crate::commands::clips::Reading;
+use crate::commands::figure::{figure, percent};
 use crate::commands::output::{print_json, spinner};
+use crate::commands::quality;
 
 /// Measure an emotion pack on labelled clips
 ///
@@ -87,11 +89,15 @@ pub fn run(args: &Args) -> miette::Result<()> {
         return print_json(&Figures { report: &report, distances: distances.as_ref() });
     }
     print(&report);
-    if let Some(Distances { error, identity }) = &distances {
+    if let Some(Distances { error, identity, quality: found }) = &distances {
         println!();
         println!("to the recorded motions: aligned RMS joint distance, cm; {}", angles::CAPTION);
         println!("{:>10.2}{:>10.2}   cm", identity.cm, error.cm);
         angles::print(&[("middle", Some(&identity.degrees)), ("labelled", Some(&error.degrees))]);
+        if let Some(found) = found {
+            println!();
+            quality::compared(found, ["middle", "recorded", "labelled"], "means of the motions");
+        }
     }
     Ok(())
 }
@@ -109,12 +115,12 @@ fn print(report: &Report) {
     println!("                   clips    pairs   in the right order   Spearman");
     for attribute in &report.attributes {
         println!(
-            "{:<15} {:>8} {:>8} {:>18.2} % {:>10.3}",
+            "{:<15} {:>8} {:>8} {:>20} {:>10}",
             attribute.attribute,
             attribute.labelled,
             attribute.pairs,
-            100.0 * attribute.pair_accuracy,
-            attribute.spearman
+            percent(attribute.pair_accuracy, 2),
+            figure(attribute.spearman, 3)
         );
     }
 }

@@ -8,6 +8,7 @@ use kinesic_host::face::{Report, evaluate, landmarks, read_all};
 use kinesic_host::pack::PackFile;
 use miette::{IntoDiagnostic, miette};
 
+use crate::commands::figure::{figure, percent};
 use crate::commands::output::{check_output, print_json, write_whole};
 
 /// Measure a face pack on labelled faces
@@ -85,8 +86,8 @@ fn print(report: &Report) {
     println!("{} faces, {} labelled", report.faces, report.labelled);
     println!("                   pairs   in the right order   Spearman");
     let line = |name: &str, pairs: u64, accuracy: f64, spearman: Option<f64>| {
-        let spearman = spearman.map_or(String::new(), |s| format!("{s:10.3}"));
-        println!("{name:<15} {pairs:>8} {:>18.2} % {spearman}", 100.0 * accuracy);
+        let spearman = spearman.map_or(String::new(), |s| format!("{:>10}", figure(s, 3)));
+        println!("{name:<15} {pairs:>8} {:>20} {spearman}", percent(accuracy, 2));
     };
     line("all", report.pairs, report.pair_accuracy, Some(report.spearman));
     line("within clusters", report.pairs_within_clusters, report.pair_accuracy_within_clusters, None);

@@ -12,6 +12,7 @@ use miette::{IntoDiagnostic, miette};
 use crate::commands::angles;
 use crate::commands::clips::{Pairs, Reading};
 use crate::commands::output::{print_json, spinner};
+use crate::commands::quality;
 
 /// Measure how well a pack translates: aligned RMS joint distance to the target, cm, and mean angle to it, degrees
 ///
@@ -19,7 +20,8 @@ use crate::commands::output::{print_json, spinner};
 /// heading-local coordinates without horizontal root movement, at the best alignment in time. Beside it: the source itself
 /// (identity), and the mean offset and the best affine map of each joint, fitted on the pack's training pairs: of positions for
 /// the distances, of rotations for the angles. These two are not fitted here but what the pack states. Angles are geodesic, between
-/// local rotations; the root counts with its tilt.
+/// local rotations; the root counts with its tilt. Feet, rhythm, jerk and posture stand
+/// beside them, for source, target and result.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -32,7 +34,8 @@ pub struct Args {
     #[command(flatten)]
     pairs: Pairs,
     /// Print one JSON object: error_cm, identity_cm, offset_cm, affine_cm, the same with open ends, degrees (over all joints, leaves,
-    /// inner joints and by joint, with swing and twist), and every pair
+    /// inner joints and by joint, with swing and twist), quality (foot slide, standing time, steps a minute, jerk, lean and posture of source,
+    /// result and target), and every pair
     #[arg(long)]
     json: bool,
     #[command(flatten)]
@@ -96,4 +99,8 @@ fn print(report: &Report) {
     println!();
     println!("mean of {}: {}", report.pairs.len(), angles::CAPTION);
     angles::print(&angles::columns(&report.errors));
+    if let Some(found) = &report.quality {
+        println!();
+        quality::compared(found, quality::PAIR, &format!("mean of {}", report.pairs.len()));
+    }
 }

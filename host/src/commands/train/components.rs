@@ -13,12 +13,14 @@ use kinesic_host::step_cache::StepCache;
 use miette::IntoDiagnostic;
 use serde::Serialize;
 
+use super::learned::{Forced, no_nearer, same};
 use super::report::{ReportArgs, components::page};
 use super::resume::ResumeArgs;
 use super::session::Session;
 use crate::commands::clips::Reading;
 use crate::commands::origin::fingerprints;
 use crate::commands::precision::Precision;
+use crate::commands::quality;
 
 /// Style weights of the trade-off curve.
 const CURVE: [f64; 8] = [0.0, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0];
@@ -77,6 +79,8 @@ pub struct Args {
     /// Seed of the noise that learning starts from
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    #[command(flatten)]
+    forced: Forced,
     /// Print the results as one JSON object
     #[arg(long)]
     json: bool,
@@ -127,11 +131,15 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let curve = if args.curve { trade_off(&trained, &options, &CURVE, &cache) } else { Vec::new() };
     drop(cache);
 
-    let mut provenance = session.provenance(prints, vec![trained.choice.reason.clone()]);
+    let ends = trained.strengths.why().map(|why| format!("plausible strengths end: {why}"));
+    let notes = std::iter::once(trained.choice.reason.clone()).chain(ends).collect();
+    let mut provenance = session.provenance(prints, notes);
     provenance.metrics = recorded(&trained);
     let preview = PackFile::from_bytes(&trained.model.pack(&rig, &provenance));
     let report = evaluate(&preview.pack().into_diagnostic()?, &rig, &provenance.metrics).into_diagnostic()?;
     let to_style = to_clip(&preview.pack().into_diagnostic()?, &rig, &style).into_diagnostic()?;
+    let help = "choose two clips that differ in manner, or give the style more weight (--style-weight, --posture)";
+    args.forced.check(why_not(&trained, &report, &to_style), help)?;
     provenance.metrics.extend(measured(&report));
     let bytes = session.of_robot(trained.model.pack(&rig, &provenance), &reading, &provenance)?;
     let file = session.write(&bytes)?;
@@ -145,6 +153,8 @@ pub fn run(args: &Args) -> miette::Result<()> {
         steps: trained.learned.history.len() - 1,
         objective: trained.learned.history.last().copied().unwrap_or_default(),
         strength: trained.model.strength,
+        strength_ends: trained.strengths.why(),
+        style_distance_before: trained.style_distance_before,
         curve: &curve,
         training: &report,
         to_style: &to_style,
@@ -172,6 +182,22 @@ impl Args {
             posture: self.posture,
         }
     }
+}
+
+/// Why the pack cannot be of use, if so.
+fn why_not(trained: &Trained, report: &Report, to_style: &ToClip) -> Option<String> {
+    let apart = |distance: &Distance| [distance.cm, distance.degrees.all];
+    let before = apart(&to_style.identity);
+    if same(before) {
+        return Some("the content clip and the style clip are the same motion: there is nothing to learn".to_owned());
+    }
+    if same(apart(&report.change)) {
+        return Some("the pack learned nothing: it changes nothing of the content".to_owned());
+    }
+    // The two clips may show different content, so it is enough that the components come nearer to the style's.
+    let nearer = report.style_distance < trained.style_distance_before;
+    no_nearer("the restyled motion comes no nearer to the style clip", before, apart(&to_style.error))
+        .filter(|_| !nearer)
 }
 
 fn recorded(trained: &Trained) -> Vec<Metric> {
@@ -202,6 +228,11 @@ struct Summary<'a> {
     steps: usize,
     objective: f64,
     strength: [f64; 2],
+    /// What ends the plausible strengths.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    strength_ends: Option<String>,
+    /// `|Gram(C_S) - Gram(C_C)| / |Gram(C_S)|`: doing nothing.
+    style_distance_before: f64,
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     curve: &'a [TradeOff],
     training: &'a Report,
@@ -218,8 +249,8 @@ fn print(summary: &Summary) {
     );
     println!("learning       {:8}  steps", summary.steps);
     println!(
-        "style distance {:8.3}  content distance {:.3} (both relative)",
-        report.style_distance, report.content_distance
+        "style distance {:8.3}  {:.3} before, content distance {:.3} (all relative)",
+        report.style_distance, summary.style_distance_before, report.content_distance
     );
     println!(
         "angles         {:8.1}  degrees to the style, {:.1} before; head, hands, feet {:.1}, {:.1} before",
@@ -232,6 +263,9 @@ fn print(summary: &Summary) {
     row("change", &report.change);
     row("content: style", &summary.to_style.identity);
     row("result: style", &summary.to_style.error);
+    if let Some(found) = &summary.to_style.quality {
+        quality::compared(found, ["content", "style", "result"], "stored stream");
+    }
     if !summary.curve.is_empty() {
         println!("style weight   style distance   content distance");
         for point in summary.curve {
@@ -239,7 +273,11 @@ fn print(summary: &Summary) {
         }
     }
     println!(
-        "{}: {} bytes, {} frames a second, strengths up to {}",
-        summary.pack, summary.bytes, summary.frame_rate, summary.strength[1]
+        "{}: {} bytes, {} frames a second, plausible strengths 0 to {}{}",
+        summary.pack,
+        summary.bytes,
+        summary.frame_rate,
+        summary.strength[1],
+        summary.strength_ends.as_ref().map_or(String::new(), |why| format!("; {why}"))
     );
 }

@@ -8,16 +8,20 @@ use kinesic_host::emotion::labels::{self, Attribute};
 use kinesic_host::emotion::motions::{Example, hold_out, read};
 use kinesic_host::emotion::segment::Cut;
 use kinesic_host::emotion::{Distances, TrainOptions, Trained, compare_motions, train};
+use kinesic_host::measure::Distance;
 use kinesic_host::pack::{Metric, PackFile};
 use kinesic_host::prepare::Source;
 use kinesic_host::rig::Rig;
 use miette::{IntoDiagnostic, WrapErr, miette};
 use serde::Serialize;
 
+use super::learned::{Forced, by_chance, no_nearer};
 use super::report::{ReportArgs, emotion::page};
 use super::session::{Session, part, share};
 use crate::commands::clips::Reading;
+use crate::commands::figure::{figure, percent};
 use crate::commands::origin::{fingerprints, name_of};
+use crate::commands::quality;
 
 /// Learn how strongly motions show emotions, and how a motion looks at every strength
 ///
@@ -78,6 +82,8 @@ pub struct Args {
     /// Seed of all random choices
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    #[command(flatten)]
+    forced: Forced,
     /// Print the results as one JSON object
     #[arg(long)]
     json: bool,
@@ -133,6 +139,17 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let unseen = (!held.is_empty()).then(|| evaluate(&scorer, &held));
     let distances = |examples: &[Example]| compare_motions(&pack, &scorer, examples).into_diagnostic();
     let distances = [distances(&kept)?, distances(&held)?];
+    let help = "check that the labels are in the right column and order, and that all clips show one action";
+    // Labels are coarse: two clips of one label may be read as half as strong and twice as strong. So what is made has a second chance.
+    let unlabelled = || -> Vec<Example> {
+        let without = |example: &Example| Example { levels: vec![None; example.levels.len()], ..example.clone() };
+        kept.iter().map(without).collect()
+    };
+    let why = match why_not(&training, distances[0].as_ref()) {
+        Some(_) => why_not(&training, compare_motions(&pack, &scorer, &unlabelled()).into_diagnostic()?.as_ref()),
+        None => None,
+    };
+    args.forced.check(why, help)?;
     provenance.metrics = metrics(&trained, &training, unseen.as_ref());
     for (name, found) in ["training", "takes_held_out"].into_iter().zip(&distances) {
         let values = found.iter().flat_map(|d| [("error", &d.error), ("identity", &d.identity)]);
@@ -213,6 +230,22 @@ impl Args {
     }
 }
 
+/// Why the pack cannot be of use, if so: judged on the clips that it was trained on.
+fn why_not(training: &Report, distances: Option<&Distances>) -> Option<String> {
+    let mut attributes = training.attributes.iter();
+    let by_chance = attributes
+        .find_map(|a| by_chance(&format!("{} is not read from the training clips", a.attribute), a.pair_accuracy));
+    let apart = |distance: &Distance| [distance.cm, distance.degrees.all];
+    let made = |d: &Distances| {
+        no_nearer(
+            "the motions made for the training clips come no nearer to these",
+            apart(&d.identity),
+            apart(&d.error),
+        )
+    };
+    by_chance.or_else(|| distances.and_then(made))
+}
+
 fn metrics(trained: &Trained, training: &Report, unseen: Option<&Report>) -> Vec<Metric> {
     let mut metrics = vec![
         Metric::new("keyframe_error_cm", 100.0 * trained.keyframe_error),
@@ -256,13 +289,13 @@ fn print(summary: &Summary) {
     {
         for attribute in &report.attributes {
             println!(
-                "{:<18} {:>9} {:>10} {:>10} {:>18.2} % {:>10.3}",
+                "{:<18} {:>9} {:>10} {:>10} {:>20} {:>10}",
                 format!("{name}, {}", attribute.attribute),
                 attribute.labelled,
                 report.motions,
                 attribute.pairs,
-                100.0 * attribute.pair_accuracy,
-                attribute.spearman
+                percent(attribute.pair_accuracy, 2),
+                figure(attribute.spearman, 3)
             );
         }
     }
@@ -279,8 +312,12 @@ fn print(summary: &Summary) {
             );
         }
     }
+    if let Some(found) = summary.distances[0].as_ref().and_then(|d| d.quality.as_ref()) {
+        quality::compared(found, ["middle", "recorded", "labels"], "trained on");
+    }
     for Strengths { name, strength: [low, high] } in &summary.attributes {
-        println!("{name}: strengths from {low:.2} to {high:.2}");
+        let [low, high] = [low, high].map(|end| figure(f64::from(*end), 2));
+        println!("{name}: strengths from {low} to {high}");
     }
     println!("{}: {} bytes", summary.pack, summary.bytes);
 }

@@ -5,11 +5,13 @@ use std::path::PathBuf;
 use kinesic_host::face::landmarks;
 use kinesic_host::face::{Face, Report, TrainOptions, evaluate, hold_out, train};
 use kinesic_host::pack::{Metric, PackFile};
-use miette::{IntoDiagnostic, WrapErr, miette};
+use miette::{IntoDiagnostic, WrapErr};
 use serde::Serialize;
 
+use super::learned::{Forced, by_chance};
 use super::report::{ReportArgs, face::page};
 use super::session::{Session, part, share};
+use crate::commands::figure::{figure, percent};
 use crate::commands::origin::fingerprints;
 use crate::commands::precision::Precision;
 
@@ -54,6 +56,8 @@ pub struct Args {
     /// Accepted as with the other engines: a face is trained within seconds and keeps no checkpoint, so it begins anew
     #[arg(long)]
     resume: bool,
+    #[command(flatten)]
+    forced: Forced,
     /// Print the results as one JSON object
     #[arg(long)]
     json: bool,
@@ -82,6 +86,8 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let preview = PackFile::from_bytes(&trained.model.pack(&provenance));
     let measure = |faces: &[Face]| evaluate(&preview.pack().into_diagnostic()?, faces).into_diagnostic();
     let training = measure(&kept)?;
+    let why = by_chance(&format!("{} is not read from the training faces", args.attribute), training.pair_accuracy);
+    args.forced.check(why, "check that the labels are in the right column")?;
     let unseen = if held.is_empty() { None } else { Some(measure(&held)?) };
     provenance.metrics.push(Metric::new("pair_accuracy_training", training.pair_accuracy));
     if let Some(unseen) = &unseen {
@@ -102,9 +108,6 @@ pub fn run(args: &Args) -> miette::Result<()> {
         held_out: unseen.as_ref(),
     };
     session.finish(&file, page, None, &summary, |summary| {
-        if summary.training.pairs == 0 {
-            return Err(miette!("no two faces have different labels"));
-        }
         print(summary);
         Ok(())
     })
@@ -128,17 +131,17 @@ fn print(summary: &Summary) {
         std::iter::once(("trained on", summary.training)).chain(summary.held_out.map(|r| ("held out", r)))
     {
         println!(
-            "{name:<18} {:>9} {:>10} {:>18.2} % {:>10.3}",
+            "{name:<18} {:>9} {:>10} {:>20} {:>10}",
             report.faces,
             report.pairs,
-            100.0 * report.pair_accuracy,
-            report.spearman
+            percent(report.pair_accuracy, 2),
+            figure(report.spearman, 3)
         );
     }
     summary.notes.iter().for_each(|note| println!("note: {note}"));
-    let [low, high] = summary.strength;
+    let [low, high] = summary.strength.map(|end| figure(f64::from(end), 2));
     println!(
-        "{}: {} bytes, {} clusters of head pose, strengths from {low:.2} to {high:.2}",
+        "{}: {} bytes, {} clusters of head pose, strengths from {low} to {high}",
         summary.pack, summary.bytes, summary.clusters
     );
 }

@@ -13,6 +13,7 @@ use kinesic_host::prepare::{Source, common_rate};
 use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
 
+use super::learned::Forced;
 use super::report::{ReportArgs, mechanics::page};
 use super::resume::ResumeArgs;
 use super::session::Session;
@@ -72,6 +73,8 @@ pub struct Args {
     /// Seed of weights, order, noise and split
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    #[command(flatten)]
+    forced: Forced,
     /// Print the results as one JSON object
     #[arg(long)]
     json: bool,
@@ -150,6 +153,8 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let mut checkpoint =
         args.resume.checkpoint(&args.out, &[options_and_rate, clips_by_hash, args.reading.deciding()?])?;
     let trained = train_kept(&rig, &clips, &name, &options, &progress, &mut checkpoint).into_diagnostic()?;
+    let help = "train on more clips that move, or longer (--epochs)";
+    args.forced.check(why_not(&trained.training), help)?;
     let inputs = prints.into_iter().zip(&trained.trained_on).filter(|(_, trained)| **trained).map(|(i, _)| i).collect();
     let mut provenance = session.provenance(inputs, notes(args, &trained, &mechanics));
     provenance.metrics = metrics(&trained);
@@ -184,6 +189,24 @@ pub fn run(args: &Args) -> miette::Result<()> {
     session.finish(&file, page, Some(checkpoint), &summary, |summary| {
         summary.print();
         Ok(())
+    })
+}
+
+/// Degrees by which poses differ from their mean under which nothing is to be learned.
+const STILL: f64 = 0.05;
+
+/// Why the pack cannot be of use, if so: judged on the clips that it was trained on.
+fn why_not(training: &Figures) -> Option<String> {
+    let Figures { geodesic_deg: after, mean_pose_deg: before, .. } = *training;
+    if before < STILL {
+        return Some("the clips hardly move: there is nothing to learn".to_owned());
+    }
+    // What is no number is no gain.
+    let nearer = after < before;
+    (!nearer).then(|| {
+        format!(
+            "the pack comes no nearer to its own training clips than their mean pose: {after:.2} against {before:.2} degrees a joint"
+        )
     })
 }
 

@@ -1,8 +1,10 @@
 //! `kinesic train`: one file an engine.
 
 mod components;
+mod doubtful;
 mod emotion;
 mod face;
+mod learned;
 mod mechanics;
 mod report;
 mod resume;
@@ -11,8 +13,20 @@ mod translate;
 
 use clap::Subcommand;
 
+/// Which engine when.
+pub const CHOOSE: &str = "\
+You have                                                     use
+  pairs of clips: the same thing done in two manners         train translate
+  a clip, and one in another manner that is no pair          train components
+  labelled clips of one action; a dial per mood              train emotion, then synth
+  plain clips of a body; more or less of what is expressive  train mechanics, then modulate, mix, blend
+  a robot's own moves in two manners                         train translate --robot
+  68 landmarks of faces, and how strongly they smile         train face
+What each keeps, costs and cannot do: docs/choose.md";
+
 /// Train a model from clips and pack it
 #[derive(Debug, Subcommand)]
+#[command(after_help = CHOOSE)]
 pub enum Engine {
     Translate(translate::Args),
     Mechanics(mechanics::Args),

@@ -7,6 +7,7 @@ use kinesic_host::clip::Clip;
 use kinesic_host::measure::Degrees;
 use kinesic_host::measure::turns::Turns;
 use kinesic_host::pack::{Metric, PackFile};
+use kinesic_host::plausible::Plausible;
 use kinesic_host::prepare::{Source, common_rate};
 use kinesic_host::step_cache::StepCache;
 use kinesic_host::translate::{
@@ -16,6 +17,8 @@ use kinesic_host::translate::{
 use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
 
+use super::doubtful::doubtful;
+use super::learned::{Forced, no_nearer, same};
 use super::report::{ReportArgs, translate::page};
 use super::resume::ResumeArgs;
 use super::session::Session;
@@ -23,6 +26,7 @@ use crate::commands::angles;
 use crate::commands::clips::{Pairs, Reading};
 use crate::commands::origin::{fingerprints, name_of};
 use crate::commands::precision::Precision;
+use crate::commands::quality;
 
 /// Learn to translate one manner of moving into another, from pairs of clips
 ///
@@ -67,9 +71,8 @@ pub struct Args {
     /// Leave out what tells familiar motion from other: no fading, one action, about 3 kB and 1,100 multiply-adds less
     #[arg(long)]
     no_gate: bool,
-    /// Write the pack even if it learned nothing, or is worse than doing nothing
-    #[arg(long)]
-    force: bool,
+    #[command(flatten)]
+    forced: Forced,
     /// Print the results as one JSON object
     #[arg(long)]
     json: bool,
@@ -133,31 +136,13 @@ fn check_rate<'a>(fps: f64, clips: impl Iterator<Item = &'a Clip>) -> miette::Re
     ))
 }
 
-/// Distances between clips under which nothing is to be learned, cm and degrees.
-const NOTHING: [f64; 2] = [0.01, 0.05];
-
-/// Refuses a pack that cannot be of use.
-fn check_learned(judged: &Errors, force: bool) -> miette::Result<()> {
-    let [before, after] = [&judged.degrees.identity, &judged.degrees.error].map(|degrees| degrees.all);
-    let why = if judged.identity_cm < NOTHING[0] && before < NOTHING[1] {
-        "the clips of the pairs are the same motion: there is nothing to learn".to_owned()
-    } else if judged.error_cm >= judged.identity_cm && after >= before {
-        format!(
-            "the pack comes no nearer to its own training clips than doing nothing: {:.2} against {:.2} cm, {after:.2} against {before:.2} degrees",
-            judged.error_cm, judged.identity_cm
-        )
-    } else {
-        return Ok(());
-    };
-    if force {
-        eprintln!("note: {why}");
-        return Ok(());
+/// Why the pack cannot be of use, if so.
+fn why_not(judged: &Errors) -> Option<String> {
+    let before = [judged.identity_cm, judged.degrees.identity.all];
+    if same(before) {
+        return Some("the clips of the pairs are the same motion: there is nothing to learn".to_owned());
     }
-    Err(miette!(
-        help =
-            "check that the clips of a pair show the same content in two manners; --force writes the pack all the same",
-        "{why}"
-    ))
+    no_nearer("the pack comes no nearer to its own training clips", before, [judged.error_cm, judged.degrees.error.all])
 }
 
 /// Runs the command.
@@ -216,18 +201,20 @@ pub fn run(args: &Args) -> miette::Result<()> {
     (provenance.baselines, provenance.turns) = (trained.baselines.clone(), turns.numbers());
     let preview = PackFile::from_bytes(&args.precision.of(trained.model.pack(&rig, &provenance), &provenance)?);
     let (neutral, styled): (Vec<&Clip>, Vec<&Clip>) = clips.iter().map(|(neutral, styled)| (neutral, styled)).unzip();
-    trained.model.strength =
-        plausible(&preview.pack().into_diagnostic()?, &rig, &neutral, &styled).into_diagnostic()?;
+    let strengths = plausible(&preview.pack().into_diagnostic()?, &rig, &neutral, &styled).into_diagnostic()?;
+    trained.model.strength = strengths.range();
+    provenance.notes.extend(strengths.why().map(|why| format!("plausible strengths end: {why}")));
     let pack = preview.pack().into_diagnostic()?;
     let report = evaluate(&pack, &rig, &trained.baselines, Some(&turns), &named).into_diagnostic()?;
     let judged = report.errors.judged(trained.alignment);
-    check_learned(&judged, args.force)?;
+    let doubtful = doubtful(&report.pairs, trained.alignment);
+    args.forced.check(why_not(&judged), "check that the clips of a pair show the same content in two manners")?;
     provenance.metrics = metrics(&trained, &judged);
     let bytes = args.precision.of(trained.model.pack(&rig, &provenance), &provenance)?;
     let bytes = session.of_robot(bytes, &options, &provenance)?;
     let file = session.write(&bytes)?;
     let page = page(&trained, &report, &named[0], &rig, &file)?;
-    let summary = Summary::new(args, &trained, &report, bytes.len(), fps);
+    let summary = Summary { doubtful, ..Summary::new(args, &trained, &report, strengths, bytes.len(), fps) };
     session.finish(&file, page, Some(checkpoint), &summary, |summary| {
         print(summary, &trained);
         Ok(())
@@ -336,12 +323,18 @@ struct Summary<'a> {
     forms: Vec<(String, f64)>,
     mirrored: bool,
     strength: [f64; 2],
+    /// What ends the plausible strengths.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    strength_ends: Option<String>,
     validation_cm: f64,
+    /// Pairs whose clips do not seem to show the same action, and why.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    doubtful: Vec<String>,
     training: &'a Report,
 }
 
 impl<'a> Summary<'a> {
-    fn new(args: &Args, trained: &Trained, report: &'a Report, bytes: usize, fps: f64) -> Self {
+    fn new(args: &Args, trained: &Trained, report: &'a Report, strengths: Plausible, bytes: usize, fps: f64) -> Self {
         Self {
             pack: args.out.display().to_string(),
             bytes,
@@ -351,8 +344,10 @@ impl<'a> Summary<'a> {
             model: describe(&trained.candidate.0),
             forms: trained.forms.iter().map(|(candidate, error)| (describe(candidate), *error)).collect(),
             mirrored: trained.mirrored,
-            strength: trained.model.strength,
+            strength: strengths.range(),
+            strength_ends: strengths.why(),
             validation_cm: trained.candidate.1,
+            doubtful: Vec::new(),
             training: report,
         }
     }
@@ -378,10 +373,14 @@ fn print(summary: &Summary, trained: &Trained) {
             |of: fn(&Degrees) -> f64| degrees.map_or_else(|| "-".to_owned(), |degrees| format!("{:.2}", of(degrees)));
         println!("               {name:<8} {cm:8.2} {:>8} {:>8}", angle(|d| d.all), angle(|d| d.leaves));
     }
-    for note in notes(trained).iter().skip(4) {
+    if let Some(found) = &summary.training.quality {
+        quality::compared(found, quality::PAIR, "training pairs");
+    }
+    for note in notes(trained).iter().skip(4).chain(&summary.doubtful) {
         println!("note: {note}");
     }
-    let [low, high] = trained.model.strength;
+    let [low, high] = summary.strength;
     let Summary { pack, bytes, frame_rate, .. } = summary;
-    println!("{pack}: {bytes} bytes, {frame_rate} frames a second, plausible strengths {low} to {high}");
+    let why = summary.strength_ends.as_ref().map_or(String::new(), |why| format!("; {why}"));
+    println!("{pack}: {bytes} bytes, {frame_rate} frames a second, plausible strengths {low} to {high}{why}");
 }

@@ -7,7 +7,7 @@ use kinesic_host::report::{Chart, Line, Report as Page, Table};
 use kinesic_host::rig::Rig;
 use miette::IntoDiagnostic;
 
-use crate::commands::angles;
+use crate::commands::{angles, quality};
 
 /// The page about a training.
 pub fn page(
@@ -58,6 +58,13 @@ pub fn page(
         ],
         "Angles. The two clips need not show the same content, so the result need not come near the style clip",
     ));
+    if let Some(found) = &to_style.quality {
+        page.table(&quality::table(
+            found,
+            ["content", "style", "result"],
+            "What the eye sees first; content and result are the stored stream",
+        ));
+    }
     page.heading("How the learning went").chart(&Chart {
         caption: "Objective of style learning (content + style + smoothness, in squared deviations) over the steps of \
                   Adam from noise."

@@ -8,7 +8,8 @@ use kinesic_host::emotion::{Distances, HostEmotion, Trained};
 use kinesic_host::report::{Chart, Line, Report as Page, Table};
 use miette::IntoDiagnostic;
 
-use crate::commands::angles;
+use crate::commands::figure::{figure, percent};
+use crate::commands::{angles, quality};
 
 /// Strengths along a curve.
 const STEPS: usize = 41;
@@ -37,8 +38,8 @@ pub fn page(
                 format!("{name}, {}", a.attribute),
                 a.labelled.to_string(),
                 a.pairs.to_string(),
-                format!("{:.2} %", 100.0 * a.pair_accuracy),
-                format!("{:.3}", a.spearman),
+                percent(a.pair_accuracy, 2),
+                figure(a.spearman, 3),
             ]
         };
         report.attributes.iter().map(row).collect()
@@ -60,13 +61,12 @@ pub fn page(
         head: ["attribute", "ordered", "similar", "cost", "validation"].map(Into::into).to_vec(),
         rows: (model.attributes.iter().zip(&trained.rankings))
             .map(|(attribute, r)| {
-                let validation = if r.validation.is_nan() { "-".into() } else { format!("{:.2} %", 100.0 * r.validation) };
                 vec![
                     attribute.name.clone(),
                     r.ordered.to_string(),
                     r.similar.to_string(),
                     format!("{:.2e}", r.cost),
-                    validation,
+                    percent(r.validation, 2),
                 ]
             })
             .collect(),
@@ -103,6 +103,10 @@ pub fn page(
             &[("middle", Some(&found.identity.degrees)), ("labels", Some(&found.error.degrees))],
             &format!("Angles to the clips {name}"),
         ));
+        if let Some(found) = &found.quality {
+            let caption = format!("What the eye sees first, means of the motions {name}");
+            page.table(&quality::table(found, ["middle", "recorded", "labels"], &caption));
+        }
     }
     page.chart(&Chart {
         caption: "How long the motion takes at each strength, the other strengths in the middle of their range.".into(),

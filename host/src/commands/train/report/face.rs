@@ -5,6 +5,8 @@ use kinesic_host::pack::PackFile;
 use kinesic_host::report::{Chart, Line, Report as Page, Table, faces};
 use miette::IntoDiagnostic;
 
+use crate::commands::figure::{figure, percent};
+
 /// Bars of a histogram over the plausible strengths.
 const BARS: usize = 30;
 
@@ -28,7 +30,9 @@ pub fn page(
     let largest = trained.faces.iter().enumerate().max_by_key(|(_, count)| **count).map_or(0, |(index, _)| index);
     let [low, high] = model.strength;
     let shown = [("weakest", low), ("middle", low.midpoint(high)), ("strongest", high)];
-    let shape = |(name, strength)| Some((format!("{name}, {strength:.2}"), device.shape(largest, strength)?));
+    let shape = |(name, strength)| {
+        Some((format!("{name}, {}", figure(f64::from(strength), 2)), device.shape(largest, strength)?))
+    };
     page.figure(
         &faces(&shown.into_iter().filter_map(shape).collect::<Vec<_>>()),
         &format!(
@@ -40,14 +44,13 @@ pub fn page(
     );
     page.heading("How well it ranks");
     let row = |name: &str, report: &Report| {
-        let percent = |x: f64| format!("{:.2} %", 100.0 * x);
         vec![
             name.to_owned(),
             report.faces.to_string(),
             report.pairs.to_string(),
-            percent(report.pair_accuracy),
-            percent(report.pair_accuracy_within_clusters),
-            format!("{:.3}", report.spearman),
+            percent(report.pair_accuracy, 2),
+            percent(report.pair_accuracy_within_clusters, 2),
+            figure(report.spearman, 3),
         ]
     };
     page.table(&Table {
@@ -64,7 +67,7 @@ pub fn page(
         head: ["cluster", "faces", "validation", "error"].map(Into::into).to_vec(),
         rows: (0..model.clusters.len())
             .map(|c| {
-                let validation = format!("{:.2} %", 100.0 * trained.validation[c]);
+                let validation = percent(trained.validation[c], 2);
                 vec![c.to_string(), trained.faces[c].to_string(), validation, format!("{:.0}", 1e3 * trained.error[c])]
             })
             .collect(),

@@ -2,7 +2,7 @@
 
 use kinesic_host::mechanics::{Distances, Figures, NamedClip, Trained, decouple};
 use kinesic_host::pack::PackFile;
-use kinesic_host::report::{Chart, Line, Report as Page, Table, stick_figures};
+use kinesic_host::report::{Chart, Line, Report as Page, Table};
 use kinesic_host::rig::Rig;
 use miette::IntoDiagnostic;
 
@@ -22,15 +22,14 @@ pub fn page(
         "Networks that say which pose a body's own movement asks for; what the observed pose has beyond is expression (Boehs, \
          Vieira, Pereira 2017).",
     );
-    let parts = decouple(&file.pack().into_diagnostic()?, &rig.poses(&shown.clip)).into_diagnostic()?;
+    let pack = file.pack().into_diagnostic()?;
+    let parts = decouple(&pack, &rig.poses(&shown.clip)).into_diagnostic()?;
     let mechanics: Vec<_> = parts.iter().map(|parts| parts.mechanics).collect();
-    page.heading("What it does").figure(
-        &stick_figures(&[("observed", &shown.clip), ("mechanics", &rig.clip(&mechanics, shown.clip.frame_time))]),
-        &format!(
-            "Eight moments of {}, a clip without expression: the mechanics should look like it. Left limbs blue, right ones orange.",
-            shown.name
-        ),
-    );
+    page.heading("What it does");
+    let rows = [("observed", &shown.clip), ("mechanics", &rig.clip(&mechanics, shown.clip.frame_time))];
+    let what =
+        format!("Eight moments of {}, a clip without expression: the mechanics should look like it.", shown.name);
+    super::figures(&mut page, &pack, &rows, &what)?;
     let row = |name: &str, of: fn(&Figures) -> f64| {
         let held_back = trained.held_back.as_ref().map_or_else(|| "-".to_owned(), |f| format!("{:.5}", of(f)));
         vec![name.to_owned(), held_back, format!("{:.5}", of(&trained.training))]

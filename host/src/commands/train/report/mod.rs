@@ -9,11 +9,12 @@ pub mod translate;
 use std::path::{Path, PathBuf};
 
 use kinesic::Pack;
-use kinesic_host::clip::Clip;
+use kinesic_host::clip::{Clip, JointMap};
 use kinesic_host::pack::PackFile;
-use kinesic_host::report::{Report, Table, latency, robot_figures, stick_figures};
+use kinesic_host::report::{Report, Table, latency};
 use kinesic_host::robot::Machine;
 use kinesic_host::robot::look::Look;
+use kinesic_host::sheet::{Actor, View, sheet};
 use miette::{IntoDiagnostic, miette};
 use serde_json::Value;
 
@@ -31,12 +32,25 @@ pub struct ReportArgs {
     no_report: bool,
 }
 
+/// Height of the largest figure, pixels.
+const FIGURE: f64 = 110.0;
+/// Figures in a row.
+const MOMENTS: usize = 8;
+
 /// Adds clips of a pack's body or robot as rows of figures. `what` says of which moments.
 fn figures(page: &mut Report, pack: &Pack, rows: &[(&str, &Clip)], what: &str) -> miette::Result<()> {
-    match Machine::from_pack(pack).into_diagnostic()? {
-        Some(machine) => page.figure(&robot_figures(&Look::of_machine(&machine), rows), what),
-        None => page.figure(&stick_figures(rows), &format!("{what} Left limbs blue, right ones orange.")),
+    let machine = Machine::from_pack(pack).into_diagnostic()?;
+    let row = |(name, clip): &(&str, &Clip)| {
+        let actor = match &machine {
+            Some(machine) => Actor::machine(name, (*clip).clone(), Look::of_machine(machine)),
+            None => Actor::body(name, (*clip).clone(), JointMap::detect(&clip.skeleton).as_ref()),
+        };
+        let moments = actor.even(MOMENTS);
+        (actor, moments)
     };
+    let drawing = sheet(&rows.iter().map(row).collect::<Vec<_>>(), View::Oblique, FIGURE).into_diagnostic()?;
+    let sides = if machine.is_some() { "" } else { " Left limbs blue, right ones orange." };
+    page.figure(&drawing.svg(), &format!("{what}{sides}"));
     Ok(())
 }
 

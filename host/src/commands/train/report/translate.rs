@@ -12,7 +12,7 @@ use kinesic_host::translate::{Errors, NamedPair, Report, Settings, Trained, play
 use miette::IntoDiagnostic;
 
 use super::super::translate::{alignment_name, describe};
-use crate::commands::angles;
+use crate::commands::{angles, quality};
 
 /// The page about a training.
 pub fn page(trained: &Trained, report: &Report, first: &NamedPair, rig: &Rig, file: &PackFile) -> miette::Result<Page> {
@@ -53,6 +53,9 @@ pub fn page(trained: &Trained, report: &Report, first: &NamedPair, rig: &Rig, fi
     });
     let judged = report.errors.judged(trained.alignment);
     page.table(&angles::table(&angles::columns(&judged), "Angle to the target, mean of the training pairs"));
+    if let Some(found) = &report.quality {
+        page.table(&quality::table(found, quality::PAIR, "What the eye sees first, mean of the training pairs"));
+    }
     page.chart(&most_changed(&pack, rig, &clips)?);
     page.heading("How it was chosen").table(&Table {
         caption:
