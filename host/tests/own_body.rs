@@ -44,7 +44,7 @@ fn performed(source: &Source, strength: f32) -> Clip {
     let after =
         play(&pack, &rig, &before, &Settings { controls, timing: Timing::Keep, ..Settings::default() }).unwrap();
     let carried = OwnBody::new(source, &rig).carry(&before, &after);
-    feet::lock(&source.clip, &carried, &source.map)
+    feet::lock(&source.clip, &carried, &source.map, feet::Hold::default())
 }
 
 /// Distance of a joint of one clip from that of the other, at most, m.

@@ -18,6 +18,7 @@ mod expression;
 mod face;
 mod guard;
 mod inspect;
+mod land;
 mod limits;
 mod mask;
 mod mix;

@@ -1,17 +1,15 @@
-//! Where the result of `kinesic apply` lands: on the clip's own skeleton or on the pack's, and what its feet do there.
+//! Where the result of a command lands: on the clip's own skeleton or on the pack's, what its feet do there, and how good it is.
 
 use clap::ValueEnum;
 use kinesic::Pack;
 use kinesic_host::clip::{Clip, JointMap};
-use kinesic_host::feet::{self, IN_STEP, OUT_OF_STEP};
+use kinesic_host::feet::{self, Hold, IN_STEP, OUT_OF_STEP};
 use kinesic_host::own_body::OwnBody;
 use kinesic_host::prepare::Source;
 use kinesic_host::quality::{self, Quality};
 use kinesic_host::rig::Rig;
 use miette::miette;
 use serde::Serialize;
-
-use super::Played;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum On {
@@ -40,6 +38,9 @@ pub struct Place {
 pub struct Judged {
     #[serde(skip_serializing_if = "Option::is_none")]
     source: Option<Quality>,
+    /// Of the second clip, where a result is made of two.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    second: Option<Quality>,
     #[serde(skip_serializing_if = "Option::is_none")]
     styled: Option<Quality>,
     /// Correlation of each foot, left and right, with that of the clip; absent where it hardly swings.
@@ -67,42 +68,46 @@ impl Place {
         Ok(Self { on, feet: feet.unwrap_or(if on == On::Clip { Feet::Lock } else { Feet::Free }) })
     }
 
-    /// The result of playing `clip`, which is `source` on the rig. A robot has no feet, a stored motion no clip.
+    /// Whether the result has the clip's skeleton.
+    pub fn is_own(&self) -> bool {
+        self.on == On::Clip
+    }
+
+    /// What was made of `clip`, which is `source` on the rig. A robot has no feet, a stored motion no clip.
     pub fn land<'a>(
         &self,
         source: Option<&'a Source>,
         rig: &'a Rig,
         clip: Option<&'a Clip>,
-        played: &Played,
+        played: &Clip,
+        hold: Hold,
     ) -> Landed<'a> {
         let stands = source.is_some_and(|source| source.machine.is_some());
         let Some(clip) = clip.filter(|_| !stands) else {
-            let clip = played.on_clock(&played.clip, &played.clip);
             return Landed {
-                clip,
+                clip: played.clone(),
                 from: None,
+                second: None,
                 map: rig.frames().travels().then_some(&rig.map),
                 step: None,
                 feet: None,
             };
         };
         let (from, styled, map) = match source.filter(|_| self.on == On::Clip) {
-            Some(source) => (&source.clip, OwnBody::new(source, rig).carry(clip, &played.clip), &source.map),
-            None => (clip, played.clip.clone(), &rig.map),
+            Some(source) => (&source.clip, OwnBody::new(source, rig).carry(clip, played), &source.map),
+            None => (clip, played.clone(), &rig.map),
         };
+        let mut styled = styled;
+        if hold.soft > 0.0 {
+            feet::keep_knees(from, &mut styled, map);
+        }
         let step = feet::kept_step((from, map), (&styled, map));
         let (styled, feet) = match self.feet {
             Feet::Free => (styled, "free"),
             Feet::Lock if out_of_step(&step) => (styled, "free: out of step with the clip"),
-            Feet::Lock => (feet::lock(from, &styled, map), "locked"),
+            Feet::Lock => (feet::lock(from, &styled, map, hold), "locked"),
         };
-        Landed {
-            clip: played.on_clock(&styled, clip),
-            from: Some(from),
-            map: Some(map),
-            step: Some(step),
-            feet: Some(feet),
-        }
+        Landed { step: Some(step), feet: Some(feet), ..Landed::of_two(styled, from, None, map) }
     }
 }
 
@@ -115,20 +120,39 @@ pub struct Landed<'a> {
     /// The motion.
     pub clip: Clip,
     from: Option<&'a Clip>,
+    second: Option<&'a Clip>,
     map: Option<&'a JointMap>,
     step: Option<[Option<f64>; 2]>,
     feet: Option<&'static str>,
 }
 
-impl Landed<'_> {
+impl<'a> Landed<'a> {
+    /// What was made of one or two motions on the skeleton whose joints `map` names.
+    pub fn of_two(clip: Clip, from: &'a Clip, second: Option<&'a Clip>, map: &'a JointMap) -> Self {
+        Self { clip, from: Some(from), second, map: Some(map), step: None, feet: None }
+    }
+
     /// Quality of the clip and of what is written.
     pub fn judge(&self, written: &Clip) -> Judged {
         let quality = |clip: &Clip| self.map.map(|map| quality::measure(clip, map));
-        Judged { source: self.from.and_then(quality), styled: quality(written), step: self.step, feet: self.feet }
+        Judged {
+            source: self.from.and_then(quality),
+            second: self.second.and_then(quality),
+            styled: quality(written),
+            step: self.step,
+            feet: self.feet,
+        }
     }
 }
 
 impl Judged {
+    /// Jerk of the result over that of the clip, or of the rougher one of two.
+    pub fn jerk_ratio(&self) -> Option<f64> {
+        let sources = self.source.iter().chain(&self.second).map(|quality| quality.jerk_m_s3);
+        let most = sources.fold(0.0, f64::max);
+        self.styled.filter(|_| most > 0.0).map(|styled| styled.jerk_m_s3 / most)
+    }
+
     /// Feet in a few words, for a line about one of many clips.
     pub fn line(&self) -> String {
         let slides = self.source.as_ref().zip(self.styled.as_ref());
@@ -142,7 +166,8 @@ impl Judged {
         if self.styled.is_some() {
             println!("            foot slide, cm/s   standing, %   steps a minute   jerk, m/s^3");
         }
-        let rows = self.source.iter().map(|q| ("source", q)).chain(self.styled.iter().map(|q| ("styled", q)));
+        let sources = self.source.iter().map(|q| ("source", q)).chain(self.second.iter().map(|q| ("second", q)));
+        let rows = sources.chain(self.styled.iter().map(|q| ("styled", q)));
         for (name, q) in rows {
             println!(
                 "{name:<10} {:>17.1} {:>13.0} {:>16.0} {:>13.1}",
