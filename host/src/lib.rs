@@ -34,6 +34,7 @@ pub mod retarget;
 pub mod rig;
 pub mod robot;
 pub mod sheet;
+mod steady;
 pub mod step_cache;
 pub mod strength;
 pub mod translate;

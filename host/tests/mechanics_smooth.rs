@@ -7,7 +7,7 @@ mod real;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use kinesic_host::clip::{self, Clip, ReadOptions};
+use kinesic_host::clip::{self, Clip};
 use kinesic_host::gait::{Manner, walk};
 use nalgebra::{UnitQuaternion, Vector3};
 use serde_json::Value;
@@ -51,7 +51,7 @@ fn number(value: &Value, path: &str) -> f64 {
 }
 
 fn read(path: &Path) -> Clip {
-    clip::read(path, &ReadOptions::default()).unwrap()
+    clip::read(path).unwrap()
 }
 
 #[test]
@@ -60,7 +60,9 @@ fn more_and_less_expression_is_smooth_on_any_body() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out.bvh");
     let [pack, out] = [pack(), out].map(|path| path.display().to_string());
-    println!("jerk over the clip's own of 0, .5, 1.5, 2; of frame by frame (--on pack) at 0 and 2; new to the network, %");
+    println!(
+        "jerk over the clip's own of 0, .5, 1.5, 2; of frame by frame (--on pack) at 0 and 2; new to the network, %"
+    );
     let mut rough = Vec::new();
     for name in CLIPS {
         let path = data.join(name).display().to_string();

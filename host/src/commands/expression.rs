@@ -135,7 +135,6 @@ impl<'a> Smooth<'a> {
             let landed = make(slower, SOFT * slower.min(2.0))?;
             let quality = landed.judge(&landed.clip);
             let ratio = quality.jerk_ratio().unwrap_or(0.0);
-            if std::env::var_os("W1_TRACE").is_some() { eprintln!("trace {slower} {ratio:.3}"); }
             if best.as_ref().is_none_or(|(least, _)| ratio < *least) {
                 best = Some((ratio, Self { landed, quality, slower: Some(slower) }));
             }

@@ -99,7 +99,7 @@ impl Place {
         };
         let mut styled = styled;
         if hold.soft > 0.0 {
-            feet::keep_knees(from, &mut styled, map);
+            feet::keep_knees(from, &mut styled, map, 2.0 * hold.soft);
         }
         let step = feet::kept_step((from, map), (&styled, map));
         let (styled, feet) = match self.feet {

@@ -1,10 +1,11 @@
 //! A styled clip whose feet stand where those of its source do.
 
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 
 use super::contacts::{Foot, ground, runs};
 use super::leg::{knee_axis, reach};
 use crate::clip::{Clip, JointMap};
+use crate::steady::steady;
 
 /// Time over which a foot is let go after it stood, and caught before it stands, s.
 const BLEND: f64 = 0.2;
@@ -78,8 +79,28 @@ pub fn lock(source: &Clip, styled: &Clip, map: &JointMap, hold: Hold) -> Clip {
             let locals = &mut out.rotations[frame * joints..(frame + 1) * joints];
             reach(&out.skeleton, (foot, &axis), &out.root[frame], locals, *way);
         }
+        if soft > 0.0 {
+            soften(styled, &mut out, foot, soft * fps);
+        }
     }
     out
+}
+
+/// Lets a leg come slowly to where it is held: what was done to its joints, without leaps, under a bell of so many frames. A straight leg that is
+/// bent otherwise snaps, and where it is too short its foot stops at once.
+fn soften(styled: &Clip, held: &mut Clip, foot: &Foot, width: f64) {
+    let joints = styled.skeleton.len();
+    for joint in foot.leg {
+        let pairs = held.rotations.iter().zip(&styled.rotations).skip(joint).step_by(joints);
+        let turns: Vec<_> = pairs
+            .map(|(held, styled)| if held == styled { UnitQuaternion::identity() } else { held * styled.inverse() })
+            .collect();
+        let turns = steady(turns, (1.5 * width).ceil() as usize, width);
+        for (frame, turn) in turns.iter().enumerate().filter(|(_, turn)| turn.norm() > 1e-12) {
+            let at = frame * joints + joint;
+            held.rotations[at] = UnitQuaternion::from_scaled_axis(*turn) * styled.rotations[at];
+        }
+    }
 }
 
 /// How far the root must be carried so that standing feet move as in the source, horizontally, m, per frame.
@@ -124,13 +145,7 @@ fn travel(from: &[Vec<Vector3<f64>>], to: &[Vec<Vector3<f64>>], stands: &[Vec<bo
 
 /// How far a foot must be moved to stand where it should, m, per frame. `also` says when the styled foot stands by itself, `strays` how much of
 /// its mean way from the source's spot it keeps.
-fn holds(
-    [from, to]: [&[Vector3<f64>]; 2],
-    stands: &[bool],
-    also: &[bool],
-    fps: f64,
-    strays: f64,
-) -> Vec<Vector3<f64>> {
+fn holds([from, to]: [&[Vector3<f64>]; 2], stands: &[bool], also: &[bool], fps: f64, strays: f64) -> Vec<Vector3<f64>> {
     let mut ways = vec![Vector3::zeros(); from.len()];
     let contacts = runs(stands);
     for run in &contacts {
@@ -244,7 +259,6 @@ mod tests {
     use super::*;
     use crate::feet::Feet;
     use crate::gait::{Manner, walk};
-    use nalgebra::UnitQuaternion;
 
     fn map(clip: &Clip) -> JointMap {
         JointMap::choose(&clip.skeleton, None).unwrap().unwrap()

@@ -6,10 +6,14 @@ use nalgebra::{UnitQuaternion, Vector3};
 use super::expressive::Expressive;
 use crate::clip::{Canonical, Clip, JointMap};
 use crate::rig::MAX_JOINTS;
+use crate::steady::steady;
+
+/// A change that comes and goes within so long to either side is a leap, s.
+const LEAP: f64 = 0.05;
 
 /// A clip on the pack's rig, at any rate, with more or less of its expression: `E*^(k - 1) O`. At 1 it is the clip, bit for bit.
 pub fn modulate_clip(clip: &Clip, expressive: &Expressive, modulation: &Modulation<MAX_JOINTS>) -> Clip {
-    turned(clip, |frame| {
+    turned(clip, expressive.width(), |frame| {
         let mut turns = expressive.at(frame as f64 * clip.frame_time);
         for (turn, weight) in turns.iter_mut().zip(&modulation.mask) {
             *turn *= finite(weight * (modulation.amount - 1.0));
@@ -26,7 +30,7 @@ pub fn mix_clip(
     starts: [f64; 2],
     modulation: &Modulation<MAX_JOINTS>,
 ) -> Clip {
-    turned(mechanics, |frame| {
+    turned(mechanics, own.width().max(other.width()), |frame| {
         let time = frame as f64 * mechanics.frame_time;
         let [kept, added] = [own.at(starts[0] + time), other.at(starts[1] + time)];
         let turn = |((kept, added), weight): ((&Vector3<f64>, &Vector3<f64>), &f32)| {
@@ -41,12 +45,44 @@ fn finite(weight: f32) -> f64 {
     if weight.is_finite() { f64::from(weight) } else { 0.0 }
 }
 
-/// A clip with a turn of every joint, in the parent's frame.
-fn turned(clip: &Clip, mut turns: impl FnMut(usize) -> Vec<UnitQuaternion<f64>>) -> Clip {
+/// A clip with a turn of every joint, given in the parent's frame.
+///
+/// What the turns make of each bone, seen from the root, is smoothed once more, under a bell of `width` seconds, and laid over the bone as the clip
+/// has it. So a joint that twitches carries what hangs on it as before, and does not swing the axes about which that is turned.
+fn turned(clip: &Clip, width: f64, mut turns: impl FnMut(usize) -> Vec<UnitQuaternion<f64>>) -> Clip {
+    let (joints, fps) = (clip.skeleton.len(), clip.fps());
+    let still = UnitQuaternion::identity();
+    let parents: Vec<Option<usize>> = clip.skeleton.joints.iter().map(|joint| joint.parent).collect();
+    let (mut seen, mut changes) = (Vec::with_capacity(clip.rotations.len()), Vec::with_capacity(clip.rotations.len()));
+    for (frame, pose) in clip.rotations.chunks_exact(joints.max(1)).enumerate() {
+        let [was, is] = [seen.len(), changes.len()];
+        let mut turned: Vec<UnitQuaternion<f64>> = Vec::with_capacity(joints);
+        for ((parent, local), turn) in parents.iter().zip(pose).zip(turns(frame)) {
+            let Some(parent) = *parent else {
+                // The root is where all is seen from.
+                (seen.push(still), turned.push(still), changes.push(still));
+                continue;
+            };
+            seen.push(seen[was + parent] * local);
+            turned.push(turned[parent] * turn * local);
+            let moved = turn != still || changes[is + parent] != still;
+            changes.push(if moved { turned[turned.len() - 1] * seen[seen.len() - 1].inverse() } else { still });
+        }
+    }
+    let reach = (LEAP * fps).round().max(2.0) as usize;
+    let column = |joint: usize| steady(changes.iter().skip(joint).step_by(joints).copied(), reach, width * fps);
+    let columns: Vec<_> = (0..joints).map(column).collect();
     let mut out = clip.clone();
-    for (frame, pose) in out.rotations.chunks_exact_mut(clip.skeleton.len().max(1)).enumerate() {
-        let changed = pose.iter_mut().zip(turns(frame)).filter(|(_, turn)| *turn != UnitQuaternion::identity());
-        changed.for_each(|(rotation, turn)| *rotation = turn * *rotation);
+    for (frame, pose) in out.rotations.chunks_exact_mut(joints.max(1)).enumerate() {
+        let change = |joint: usize| UnitQuaternion::from_scaled_axis(columns[joint][frame]);
+        for (joint, local) in pose.iter_mut().enumerate() {
+            let Some(parent) = parents[joint] else { continue };
+            let [own, above] = [change(joint), change(parent)];
+            if own != above {
+                let [own, above] = [own * seen[frame * joints + joint], above * seen[frame * joints + parent]];
+                *local = above.inverse() * own;
+            }
+        }
     }
     out
 }
@@ -115,7 +151,8 @@ pub fn blend_clips(first: Parted<'_>, second: Parted<'_>, map: &JointMap, passag
             };
             let (plain_a, own_a) = of(&first, a, UnitQuaternion::identity());
             let (plain_b, own_b) = of(&second, b, turn);
-            out.rotations.push(of_expression.between(own_a, own_b, expression) * of_body.between(plain_a, plain_b, body));
+            out.rotations
+                .push(of_expression.between(own_a, own_b, expression) * of_body.between(plain_a, plain_b, body));
         }
     }
     out

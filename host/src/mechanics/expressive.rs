@@ -12,6 +12,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use super::dataset::MAX_WINDOW;
 use super::play::HostMechanics;
 use crate::rig::MAX_JOINTS;
+use crate::steady::{medians, under_bell, vectors};
 
 /// Standard deviation of the bell over the difference, s: a movement of 3 a second keeps half its size.
 const WIDTH: f64 = 0.062;
@@ -19,10 +20,6 @@ const WIDTH: f64 = 0.062;
 const ACTIVITY: f64 = 0.3;
 /// Frames to either side of the median, at least; and how many frames of a slower clip it spans.
 const NEIGHBOURS: f64 = 3.0;
-/// Widths of a bell to either side.
-const REACH: f64 = 3.0;
-/// A difference goes on turning the way it turned up to here; past it the short way is taken, cosine of half the angle (240 degrees).
-const LONG_WAY: f64 = -0.5;
 /// Deviations from the training's mean beyond which a feature is new to the network.
 pub const NEW: f32 = 3.0;
 
@@ -48,8 +45,8 @@ impl Expressive {
         let scale = pack.slice::<f32>("mechanics/feature_inverse_deviation", FEATURES)?;
         let fps = f64::from(pack.metadata().frame_rate);
         let mut state = Box::new(MechanicsState::<MAX_JOINTS, MAX_WINDOW>::new());
-        let (mut asked, mut last) = (Pose::identity(), vec![UnitQuaternion::<f64>::identity(); joints]);
-        let (mut differences, mut activity) = (Vec::with_capacity(poses.len() * joints), Vec::new());
+        let mut asked = Pose::identity();
+        let (mut differences, mut activity) = (Vec::<UnitQuaternion<f64>>::new(), Vec::new());
         let mut new = 0;
         for pose in poses {
             model.features().step(&mut state, pose);
@@ -57,17 +54,23 @@ impl Expressive {
             let far = features.iter().zip(mean).zip(scale).map(|((x, mean), scale)| ((x - mean) * scale).abs());
             new += far.filter(|far| *far > NEW).count();
             model.predict(features, pose, &mut asked);
-            for ((last, observed), asked) in last.iter_mut().zip(&pose.rotations).zip(&asked.rotations) {
+            for (observed, asked) in pose.rotations.iter().zip(&asked.rotations).take(joints) {
                 let whole = observed.cast::<f64>() * asked.cast::<f64>().inverse();
-                *last = goes_on(last, whole);
-                differences.push(vector(last));
+                differences.push(whole);
                 activity.push(f64::from(model.decoupler.activity(whole.angle() as f32)));
             }
         }
         let reach = NEIGHBOURS.max((1.5 * fps / source_fps).ceil() + 1.0) as usize;
         let new_percent = 100.0 * new as f64 / (poses.len() * FEATURES).max(1) as f64;
-        let differences = medians(&differences, joints, reach);
+        let column = |joint: usize| medians(&vectors(differences.iter().skip(joint).step_by(joints).copied()), reach);
+        let columns: Vec<_> = (0..joints).map(column).collect();
+        let differences = (0..poses.len()).flat_map(|frame| columns.iter().map(move |column| column[frame])).collect();
         Ok(Self { fps, joints, differences, activity, new_percent, width: WIDTH })
+    }
+
+    /// Standard deviation of its bell, s.
+    pub fn width(&self) -> f64 {
+        self.width
     }
 
     /// The same under a bell that is so many times as wide.
@@ -105,50 +108,8 @@ impl Expressive {
     }
 
     /// Frames near a time under a bell, with their weights.
-    fn near(&self, time: f64, width: f64, mut each: impl FnMut(f64, usize)) {
+    fn near(&self, time: f64, width: f64, each: impl FnMut(f64, usize)) {
         let frames = self.differences.len() / self.joints.max(1);
-        let (at, width) = (time * self.fps, width * self.fps);
-        let first = (at - REACH * width).ceil().max(0.0) as usize;
-        let last = ((at + REACH * width).floor().max(0.0) as usize).min(frames.saturating_sub(1));
-        let weight = |frame: usize| (-0.5 * ((frame as f64 - at) / width).powi(2)).exp();
-        let sum: f64 = (first..=last).map(weight).sum();
-        if sum > 0.0 {
-            (first..=last).for_each(|frame| each(weight(frame) / sum, frame));
-        } else if frames > 0 {
-            each(1.0, last);
-        }
+        under_bell(time * self.fps, width * self.fps, frames, each);
     }
-}
-
-/// The quaternion of a rotation that goes on from the last one: past half a turn it is further round, until the short way is much shorter.
-fn goes_on(last: &UnitQuaternion<f64>, next: UnitQuaternion<f64>) -> UnitQuaternion<f64> {
-    let other = UnitQuaternion::new_unchecked(-next.into_inner());
-    let near = if last.coords.dot(&next.coords) < 0.0 { other } else { next };
-    if near.w < LONG_WAY { UnitQuaternion::new_unchecked(-near.into_inner()) } else { near }
-}
-
-/// Rotation vector of a quaternion as it is: longer than half a turn where its real part is negative.
-fn vector(q: &UnitQuaternion<f64>) -> Vector3<f64> {
-    let sine = q.imag().norm();
-    if sine < 1e-12 { Vector3::zeros() } else { q.imag() * (2.0 * sine.atan2(q.w) / sine) }
-}
-
-/// Median of every component over so many frames to either side: a frame that leaps, or a few, do not.
-fn medians(of: &[Vector3<f64>], joints: usize, reach: usize) -> Vec<Vector3<f64>> {
-    let frames = of.len() / joints.max(1);
-    let mut near = Vec::with_capacity(2 * reach + 1);
-    let mut middle = |frame: usize, joint: usize, axis: usize| {
-        // As many frames to either side, so that the ends of a movement do not bend.
-        let reach = reach.min(frame).min(frames - 1 - frame);
-        near.clear();
-        near.extend((frame - reach..=frame + reach).map(|frame| of[frame * joints + joint][axis]));
-        *near.select_nth_unstable_by(reach, f64::total_cmp).1
-    };
-    let mut out = Vec::with_capacity(of.len());
-    for frame in 0..frames {
-        for joint in 0..joints {
-            out.push(Vector3::from_fn(|axis, _| middle(frame, joint, axis)));
-        }
-    }
-    out
 }

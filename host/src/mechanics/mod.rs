@@ -28,7 +28,7 @@ mod stages;
 mod train;
 
 pub use body::{BodyError, body, measured};
-pub use clips::{Passage, Parted, blend_clips, mix_clip, modulate_clip};
+pub use clips::{Parted, Passage, blend_clips, mix_clip, modulate_clip};
 pub use dataset::{Rows, signed, signs};
 pub use evaluate::{ClipReport, Distances, Report, evaluate};
 pub use expressive::{Expressive, NEW};
