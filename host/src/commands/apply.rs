@@ -47,6 +47,7 @@ Examples:
   kinesic apply angry.kin walk.bvh --out as-drawn.bvh --strength @curve.csv
   kinesic apply angry.kin walks/ --out angry-walks/ --format glb
   kinesic apply angry.kin walk.bvh --out as-on-the-device.bvh --on pack
+  kinesic apply angry.kin walk.bvh --out same-path.bvh --mask pelvis=0
   kinesic apply angry.kin walk.bvh --out arms-only.bvh --mask '*=0,LeftArm+=1,r_shoulder+=1'
   kinesic apply child.kin jump.csv --out child-jump.bvh --timing learned
   kinesic apply components.kin --stored --out stored.bvh
@@ -73,7 +74,8 @@ pub struct Args {
     #[arg(long, default_value = "1", allow_hyphen_values = true)]
     strength: Curve,
     /// Weights of joints, 0 = untouched, 1 = translated, by the pack's names or canonical ones; JOINT+=W means all joints below
-    /// it too, *=W is the rest
+    /// it too, *=W is the rest. The pelvis stands for the root: pelvis=0 keeps the clip's travel, height and tilt, and held feet stand on the clip's
+    /// spots
     #[arg(long, value_name = "JOINT=W,...")]
     mask: Vec<String>,
     /// Keep the clip's timing, or stretch and squeeze it as learned

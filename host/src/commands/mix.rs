@@ -96,27 +96,31 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let seconds =
         (mechanics.clip.duration() - args.mechanics_start).min(expressive.clip.duration() - args.expressive_start);
     let hold = Hold { travels: mask::travels(&modulation.mask), soft: 0.0 };
-    let fps = if place.is_own() { mechanics.source.clip.fps() } else { body.fps };
-    let first = (args.mechanics_start * fps).round() as usize;
+    let base = if place.is_own() { &mechanics.source.clip } else { &mechanics.clip };
+    let fps = base.fps();
+    let first = ((args.mechanics_start * fps).round() as usize).min(base.frames().saturating_sub(1));
     let frames = first..first + 1 + (seconds * fps).round() as usize;
     let from = &mechanics.source;
     let source = Source::new(&from.path, from.clip.slice(frames.clone()), from.map.clone());
-    let clip = match place.is_own() {
-        true => body.own_rate(from)?.slice(frames),
-        false => mechanics.clip.slice(frames),
-    };
-    let result = if place.is_own() {
-        let starts = [first as f64 / fps, args.expressive_start];
-        Smooth::of(|slower, soft| {
-            let [own, other] = [&mechanics, &expressive].map(|motion| motion.expressive.slower(slower));
-            let after = mix_clip(&clip, [&own, &other], starts, &modulation);
-            Ok(place.land(Some(&source), &body.rig, Some(&clip), &after, Hold { soft, ..hold }))
-        })?
-    } else {
+    let mixed = (!place.is_own()).then(|| {
         let skipped = (args.expressive_start * fps).round() as usize;
         let rest = |motion: &Motion, first: usize| motion.parts.iter().skip(first).copied().collect::<Vec<_>>();
-        let mixed = mix(&rest(&mechanics, first), &rest(&expressive, skipped), &modulation);
-        Smooth::not(place.land(Some(&source), &body.rig, Some(&clip), &body.clip(&mixed), hold))
+        body.clip(&mix(&rest(&mechanics, first), &rest(&expressive, skipped), &modulation))
+    });
+    let clip = match &mixed {
+        Some(mixed) => mechanics.clip.slice(first..first + mixed.frames()),
+        None => body.own_rate(from)?.slice(frames),
+    };
+    let result = match &mixed {
+        Some(mixed) => Smooth::not(place.land(Some(&source), &body.rig, Some(&clip), mixed, hold)),
+        None => {
+            let starts = [first as f64 / fps, args.expressive_start];
+            Smooth::of(|slower, soft| {
+                let [own, other] = [&mechanics, &expressive].map(|motion| motion.expressive.slower(slower));
+                let after = mix_clip(&clip, [&own, &other], starts, &modulation);
+                Ok(place.land(Some(&source), &body.rig, Some(&clip), &after, Hold { soft, ..hold }))
+            })?
+        }
     };
     let clip = &result.landed.clip;
     clip.write(&args.out).into_diagnostic()?;

@@ -47,8 +47,8 @@ fn finite(weight: f32) -> f64 {
 
 /// A clip with a turn of every joint, given in the parent's frame.
 ///
-/// What the turns make of each bone, seen from the root, is smoothed once more, under a bell of `width` seconds, and laid over the bone as the clip
-/// has it. So a joint that twitches carries what hangs on it as before, and does not swing the axes about which that is turned.
+/// What the turns make of each bone in the world is smoothed once more, under a bell of `width` seconds, and laid over the bone as the clip has
+/// it. So a joint that twitches carries what hangs on it as before, and does not swing the axes about which that is turned.
 fn turned(clip: &Clip, width: f64, mut turns: impl FnMut(usize) -> Vec<UnitQuaternion<f64>>) -> Clip {
     let (joints, fps) = (clip.skeleton.len(), clip.fps());
     let still = UnitQuaternion::identity();
@@ -59,8 +59,9 @@ fn turned(clip: &Clip, width: f64, mut turns: impl FnMut(usize) -> Vec<UnitQuate
         let mut turned: Vec<UnitQuaternion<f64>> = Vec::with_capacity(joints);
         for ((parent, local), turn) in parents.iter().zip(pose).zip(turns(frame)) {
             let Some(parent) = *parent else {
-                // The root is where all is seen from.
-                (seen.push(still), turned.push(still), changes.push(still));
+                seen.push(*local);
+                turned.push(*local);
+                changes.push(still);
                 continue;
             };
             seen.push(seen[was + parent] * local);
