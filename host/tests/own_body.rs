@@ -67,18 +67,23 @@ fn a_masked_root_keeps_its_path_and_tilt_and_held_feet_their_spots() {
             is.angle_to(&was).to_degrees()
         });
         let tilt = tilts.fold(0.0, f64::max);
-        let (mut off, mut swings) = (0.0f64, 0.0f64);
+        let (mut off, mut stood, mut swings) = (0.0, 0.0, 0.0f64);
         for foot in feet::Foot::of(&source.clip.skeleton, &source.map) {
             let (was, is) = (foot.path(&source.clip), foot.path(&held));
             let stands = feet::Foot::stands(&was, source.clip.fps(), foot.size(&source.clip.skeleton));
             for ((was, is), stands) in was.iter().zip(&is).zip(stands) {
                 let way = 100.0 * (is - was).norm();
-                if stands { off = off.max(way) } else { swings = swings.max(way) }
+                if stands {
+                    (off, stood) = (off + way, stood + 1.0);
+                } else {
+                    swings = swings.max(way);
+                }
             }
         }
+        off /= stood;
         let slide = |clip: &Clip| feet::Feet::of(clip, &source.map).slide_cm_s;
         println!(
-            "{clip}: root {:.2} mm off ({:.0} unmasked), tilt {tilt:.4} degrees, standing feet {off:.1} cm off, feet in the air {swings:.1}; \
+            "{clip}: root {:.2} mm off ({:.0} unmasked), tilt {tilt:.4} degrees, standing feet {off:.2} cm off, feet in the air at most {swings:.1}; \
              slide {:.1} cm/s, the clip's {:.1}",
             1000.0 * far(&held),
             1000.0 * far(&free),
@@ -87,7 +92,7 @@ fn a_masked_root_keeps_its_path_and_tilt_and_held_feet_their_spots() {
         );
         assert!(far(&held) < 1e-4 && tilt < 1e-3, "{clip}");
         assert!(far(&free) > 0.02, "{clip}: the mask has nothing to keep");
-        assert!(off < 2.0 && swings > off, "{clip}: {off} {swings}");
+        assert!(off < 1.0 && swings > 2.0, "{clip}: {off} {swings}");
         assert!(slide(&held) < 1.2 * slide(&source.clip) + 1.0, "{clip}");
     }
 }
