@@ -132,7 +132,7 @@ impl<'a> Smooth<'a> {
     pub fn of(make: impl Fn(f64, f64) -> miette::Result<Landed<'a>>) -> miette::Result<Self> {
         let mut best: Option<(f64, Self)> = None;
         for slower in SLOWER {
-            let landed = make(slower, SOFT * slower.min(2.0))?;
+            let landed = make(slower, SOFT * slower.min(4.0))?;
             let quality = landed.judge(&landed.clip);
             let ratio = quality.jerk_ratio().unwrap_or(0.0);
             if best.as_ref().is_none_or(|(least, _)| ratio < *least) {
