@@ -92,7 +92,7 @@ fn a_masked_root_keeps_its_path_and_tilt_and_held_feet_their_spots() {
         );
         assert!(far(&held) < 1e-4 && tilt < 1e-3, "{clip}");
         assert!(far(&free) > 0.02, "{clip}: the mask has nothing to keep");
-        assert!(off < 2.0 && swings > 2.0, "{clip}: {off} {swings}");
+        assert!(off < 2.0 && swings > 1.0, "{clip}: {off} {swings}");
         assert!(slide(&held) < 1.2 * slide(&source.clip) + 1.0, "{clip}");
     }
 }

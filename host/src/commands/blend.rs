@@ -105,7 +105,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let [from, moved] = &sources;
     let result = if place.is_own() {
         let parting = Parting::new(&body, [&first, &second], &sources)?;
-        Smooth::of(|slower, _| {
+        Smooth::of(&place, true, |_, slower, _| {
             let plains = parting.plains(slower);
             let [a, b] = [(from, &plains[0]), (moved, &plains[1])].map(|(observed, plain)| Parted { observed, plain });
             let map = &first.source.map;

@@ -128,8 +128,22 @@ impl<'a> Smooth<'a> {
     }
 
     /// The first of ever slower results that is smooth, else the smoothest. `make` makes one with expression under a bell so many times as wide,
-    /// and feet as soft as told, s.
-    pub fn of(make: impl Fn(f64, f64) -> miette::Result<Landed<'a>>) -> miette::Result<Self> {
+    /// and feet as soft as told, s. Where they are rough with feet held, and `held` is not what the user asked for, feet are let go.
+    pub fn of(
+        place: &Place,
+        held: bool,
+        make: impl Fn(&Place, f64, f64) -> miette::Result<Landed<'a>>,
+    ) -> miette::Result<Self> {
+        let best = Self::smoothest(|slower, soft| make(place, slower, soft))?;
+        if held || best.quality.jerk_ratio().is_none_or(|ratio| ratio <= ROUGH) {
+            return Ok(best);
+        }
+        let place = place.let_go();
+        let free = Self::smoothest(|slower, soft| make(&place, slower, soft))?;
+        Ok(if free.quality.jerk_ratio() < best.quality.jerk_ratio() { free } else { best })
+    }
+
+    fn smoothest(make: impl Fn(f64, f64) -> miette::Result<Landed<'a>>) -> miette::Result<Self> {
         let mut best: Option<(f64, Self)> = None;
         for slower in SLOWER {
             let landed = make(slower, SOFT * slower.min(4.0))?;

@@ -31,6 +31,8 @@ pub enum Feet {
 pub struct Place {
     on: On,
     feet: Feet,
+    /// What is said of free feet.
+    free: &'static str,
 }
 
 /// Quality of the clip and of the result.
@@ -65,7 +67,12 @@ impl Place {
             return Err(miette!(help = "leave --on out", "--on clip: {why}"));
         }
         let on = on.unwrap_or(if own && !limited { On::Clip } else { On::Pack });
-        Ok(Self { on, feet: feet.unwrap_or(if on == On::Clip { Feet::Lock } else { Feet::Free }) })
+        Ok(Self { on, feet: feet.unwrap_or(if on == On::Clip { Feet::Lock } else { Feet::Free }), free: "free" })
+    }
+
+    /// The same with feet that are let go, since held ones would jerk.
+    pub fn let_go(&self) -> Self {
+        Self { on: self.on, feet: Feet::Free, free: "free: held feet would jerk" }
     }
 
     /// Whether the result has the clip's skeleton.
@@ -103,7 +110,7 @@ impl Place {
         }
         let step = feet::kept_step((from, map), (&styled, map));
         let (styled, feet) = match self.feet {
-            Feet::Free => (styled, "free"),
+            Feet::Free => (styled, self.free),
             Feet::Lock if out_of_step(&step) => (styled, "free: out of step with the clip"),
             Feet::Lock => (feet::lock(from, &styled, map, hold), "locked"),
         };

@@ -115,7 +115,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
         Some(mixed) => Smooth::not(place.land(Some(&source), &body.rig, Some(&clip), mixed, hold)),
         None => {
             let starts = [first as f64 / fps, args.expressive_start];
-            Smooth::of(|slower, soft| {
+            Smooth::of(&place, args.feet == Some(Feet::Lock), |place, slower, soft| {
                 let [own, other] = [&mechanics, &expressive].map(|motion| motion.expressive.slower(slower));
                 let after = mix_clip(&clip, [&own, &other], starts, &modulation);
                 Ok(place.land(Some(&source), &body.rig, Some(&clip), &after, Hold { soft, ..hold }))

@@ -83,7 +83,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let source = Some(&motion.source);
     let own = body.own_rate(&motion.source)?;
     let result = if place.is_own() {
-        Smooth::of(|slower, soft| {
+        Smooth::of(&place, args.feet == Some(Feet::Lock), |place, slower, soft| {
             let after = modulate_clip(&own, &motion.expressive.slower(slower), &modulation);
             Ok(place.land(source, &body.rig, Some(&own), &after, Hold { soft, ..hold }))
         })?
