@@ -15,7 +15,7 @@ use serde_json::Value;
 /// Jerk of a result over the clip's own, at most.
 const ROUGH: f64 = 1.3;
 
-/// Clips of nine skeletons, none of which the pack was trained on.
+/// Clips of seven skeletons, none of which the pack was trained on.
 const CLIPS: [&str; 17] = [
     "xia/neutral_01_000.bvh",
     "xia/angry_13_000.bvh",
