@@ -35,6 +35,7 @@ pub mod retarget;
 pub mod rig;
 pub mod robot;
 pub mod sheet;
+mod steady;
 pub mod step_cache;
 pub mod strength;
 pub mod translate;

@@ -151,6 +151,11 @@ impl Source {
         Ok(Self { path: path.to_owned(), clip, map, log, machine: Some(machine.clone()), moves: Some(moves) })
     }
 
+    /// The same, to be put on a rig once more: what is assumed on the way was said the first time.
+    pub fn quiet(&self) -> Self {
+        Self::new(&self.path, self.clip.clone(), self.map.clone())
+    }
+
     /// A rig of this clip's skeleton; of a machine its own.
     pub fn rig(&self) -> Result<Rig, PrepareError> {
         if let Some(machine) = &self.machine {

@@ -2,10 +2,11 @@
 
 use std::path::PathBuf;
 
+use miette::IntoDiagnostic;
 use serde::Serialize;
 
 use super::clips::Reading;
-use super::expression::{Body, expression_deg, outputs};
+use super::expression::{Body, outputs};
 use super::output::{print_json, spinner};
 
 /// Split a motion into what the body must do and what it expresses
@@ -58,7 +59,8 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let body = Body::read(&args.pack)?;
     let motion = body.decouple(&args.clip, &args.reading)?;
     if let Some(path) = &args.mechanics {
-        body.write(&motion.parts.iter().map(|p| p.mechanics).collect::<Vec<_>>(), path)?;
+        let plain = body.clip(&motion.parts.iter().map(|p| p.mechanics).collect::<Vec<_>>());
+        plain.write(path).into_diagnostic()?;
     }
     if let Some(path) = &args.expressive {
         let mut poses = Vec::with_capacity(motion.parts.len());
@@ -67,7 +69,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
             pose.rotations[0] = motion.poses[0].rotations[0];
             poses.push(pose);
         }
-        body.write(&poses, path)?;
+        body.clip(&poses).write(path).into_diagnostic()?;
     }
     let joints = body.rig.joints();
     let error = |(parts, pose): (&kinesic::mechanics::Decoupled<_>, &kinesic::Pose<_>)| {
@@ -76,9 +78,9 @@ pub fn run(args: &Args) -> miette::Result<()> {
         pairs.map(|(a, b)| (a.coords - b.coords).amax()).fold(0.0f32, f32::max)
     };
     let summary = Summary {
-        clip: motion.name.clone(),
+        clip: motion.name(),
         frames: motion.poses.len(),
-        expressive_deg: expression_deg(&motion.parts, joints),
+        expressive_deg: motion.expression_deg(),
         product_error: motion.parts.iter().zip(&motion.poses).map(error).fold(0.0, f32::max),
     };
     bar.finish_and_clear();

@@ -1,4 +1,7 @@
 //! `--mask`: weights of joints.
+//!
+//! The pelvis stands for the root: its travel, its height and its tilt, with all joints above it. A root of weight 0 is the clip's, and feet that
+//! are held stand on the clip's spots.
 
 use kinesic_host::clip::Canonical;
 use kinesic_host::rig::{MAX_JOINTS, Rig};
@@ -35,9 +38,20 @@ pub fn apply(entries: &[String], rig: &Rig, most: f32, mask: &mut [f32; MAX_JOIN
         for at in joint..joints.len() {
             chosen[at] = at == joint || *below && joints[at].parent.is_some_and(|parent| chosen[parent]);
         }
+        if rig.map.joint(Canonical::Pelvis) == Some(joint) {
+            let mut above = joints[joint].parent;
+            while let Some(at) = above {
+                (chosen[at], above) = (true, joints[at].parent);
+            }
+        }
         for (to, _) in mask.iter_mut().zip(chosen).filter(|(_, chosen)| *chosen) {
             *to = *weight;
         }
     }
     Ok(())
+}
+
+/// The weight of the root: that of joint 0, at most 1.
+pub fn travels(weights: &[f32; MAX_JOINTS]) -> f64 {
+    f64::from(weights[0]).clamp(0.0, 1.0)
 }

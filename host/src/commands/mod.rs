@@ -19,6 +19,7 @@ mod face;
 mod figure;
 mod guard;
 mod inspect;
+mod land;
 mod limits;
 mod mask;
 mod mix;

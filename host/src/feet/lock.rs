@@ -1,10 +1,11 @@
 //! A styled clip whose feet stand where those of its source do.
 
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 
 use super::contacts::{Foot, ground, runs};
 use super::leg::{knee_axis, reach};
 use crate::clip::{Clip, JointMap};
+use crate::steady::steady;
 
 /// Time over which a foot is let go after it stood, and caught before it stands, s.
 const BLEND: f64 = 0.2;
@@ -23,12 +24,28 @@ const FLIGHT: f64 = 0.4;
 /// Part of its length to which a leg that stands is stretched at most.
 const STRETCH: f64 = 0.985;
 
+/// How feet are held.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hold {
+    /// Weight of the root, 0 to 1. At 0 it is left where the style has it, and feet stand on the very spots of the source.
+    pub travels: f64,
+    /// Standard deviation of the bell under which a foot is caught and let go, s: feet slip a little, and legs do not jerk.
+    pub soft: f64,
+}
+
+impl Default for Hold {
+    fn default() -> Self {
+        Self { travels: 1.0, soft: 0.0 }
+    }
+}
+
 /// Holds feet: while a foot of `source` stands, that of `styled` moves as the source's does, at its height.
 ///
 /// Both clips are of one skeleton, frame for frame. First the root's travel follows the feet that stand, so that the legs move the body and
 /// nothing else does. Then the root is lowered where a leg is too short. Last each leg is bent so that its foot is where it stood,
 /// blended in and out over .2 s. A foot in the air is kept over the ground. Where nothing was changed nothing changes.
-pub fn lock(source: &Clip, styled: &Clip, map: &JointMap) -> Clip {
+pub fn lock(source: &Clip, styled: &Clip, map: &JointMap, hold: Hold) -> Clip {
+    let Hold { travels, soft } = hold;
     let feet = Foot::of(&source.skeleton, map);
     let mut out = styled.clone();
     if feet.is_empty() || source.frames() < 2 {
@@ -40,17 +57,20 @@ pub fn lock(source: &Clip, styled: &Clip, map: &JointMap) -> Clip {
         feet.iter().zip(&from).map(|(foot, path)| Foot::stands(path, fps, foot.size(&source.skeleton))).collect();
     let to: Vec<Vec<Vector3<f64>>> = feet.iter().map(|foot| foot.path(styled)).collect();
     for (root, way) in out.root.iter_mut().zip(travel(&from, &to, &stands, fps)) {
-        *root += way;
+        *root += travels * way;
     }
     let to: Vec<Vec<Vector3<f64>>> = feet.iter().map(|foot| foot.path(&out)).collect();
     let hold = |((foot, from), (to, stands)): ((&Foot, &Vec<_>), (&Vec<_>, &Vec<_>))| {
-        holds(from, to, stands, &Foot::stands(to, fps, foot.size(&source.skeleton)), fps)
+        holds([from, to], stands, &Foot::stands(to, fps, foot.size(&source.skeleton)), fps, travels)
     };
     let mut ways: Vec<Vec<Vector3<f64>>> = feet.iter().zip(&from).zip(to.iter().zip(&stands)).map(hold).collect();
     let drops = drops(&out, &feet, &ways, &stands, fps);
     for (frame, drop) in drops.iter().enumerate() {
-        out.root[frame].y -= drop;
-        ways.iter_mut().for_each(|ways| ways[frame].y += drop);
+        out.root[frame].y -= travels * drop;
+        ways.iter_mut().for_each(|ways| ways[frame].y += travels * drop);
+    }
+    if soft > 0.0 {
+        ways.iter_mut().for_each(|ways| *ways = smooth(ways, soft * fps));
     }
     let joints = out.skeleton.len();
     for (foot, ways) in feet.iter().zip(&ways) {
@@ -59,8 +79,28 @@ pub fn lock(source: &Clip, styled: &Clip, map: &JointMap) -> Clip {
             let locals = &mut out.rotations[frame * joints..(frame + 1) * joints];
             reach(&out.skeleton, (foot, &axis), &out.root[frame], locals, *way);
         }
+        if soft > 0.0 {
+            soften(styled, &mut out, foot, soft * fps);
+        }
     }
     out
+}
+
+/// Lets a leg come slowly to where it is held: what was done to its joints, without leaps, under a bell of so many frames. A straight leg that is
+/// bent otherwise snaps, and where it is too short its foot stops at once.
+fn soften(styled: &Clip, held: &mut Clip, foot: &Foot, width: f64) {
+    let joints = styled.skeleton.len();
+    for joint in foot.leg {
+        let pairs = held.rotations.iter().zip(&styled.rotations).skip(joint).step_by(joints);
+        let turns: Vec<_> = pairs
+            .map(|(held, styled)| if held == styled { UnitQuaternion::identity() } else { held * styled.inverse() })
+            .collect();
+        let turns = steady(turns, (1.5 * width).ceil() as usize, width);
+        for (frame, turn) in turns.iter().enumerate().filter(|(_, turn)| turn.norm() > 1e-12) {
+            let at = frame * joints + joint;
+            held.rotations[at] = UnitQuaternion::from_scaled_axis(*turn) * styled.rotations[at];
+        }
+    }
 }
 
 /// How far the root must be carried so that standing feet move as in the source, horizontally, m, per frame.
@@ -103,13 +143,14 @@ fn travel(from: &[Vec<Vector3<f64>>], to: &[Vec<Vector3<f64>>], stands: &[Vec<bo
     walked.collect()
 }
 
-/// How far a foot must be moved to stand where it should, m, per frame. `also` says when the styled foot stands by itself.
-fn holds(from: &[Vector3<f64>], to: &[Vector3<f64>], stands: &[bool], also: &[bool], fps: f64) -> Vec<Vector3<f64>> {
+/// How far a foot must be moved to stand where it should, m, per frame. `also` says when the styled foot stands by itself, `strays` how much of
+/// its mean way from the source's spot it keeps.
+fn holds([from, to]: [&[Vector3<f64>]; 2], stands: &[bool], also: &[bool], fps: f64, strays: f64) -> Vec<Vector3<f64>> {
     let mut ways = vec![Vector3::zeros(); from.len()];
     let contacts = runs(stands);
     for run in &contacts {
         let mean: Vector3<f64> =
-            run.clone().map(|frame| to[frame] - from[frame]).sum::<Vector3<f64>>() / run.len() as f64;
+            run.clone().map(|frame| to[frame] - from[frame]).sum::<Vector3<f64>>() * strays / run.len() as f64;
         for frame in run.clone() {
             ways[frame] = from[frame] + Vector3::new(mean.x, 0.0, mean.z) - to[frame];
         }
@@ -218,7 +259,6 @@ mod tests {
     use super::*;
     use crate::feet::Feet;
     use crate::gait::{Manner, walk};
-    use nalgebra::UnitQuaternion;
 
     fn map(clip: &Clip) -> JointMap {
         JointMap::choose(&clip.skeleton, None).unwrap().unwrap()
@@ -227,7 +267,7 @@ mod tests {
     #[test]
     fn a_clip_locked_to_itself_is_itself() {
         let clip = walk(&Manner::WEARY, 3.0, 60.0, 0.2, 4);
-        let out = lock(&clip, &clip, &map(&clip));
+        let out = lock(&clip, &clip, &map(&clip), Hold::default());
         assert!(out.root == clip.root && out.rotations == clip.rotations);
     }
 
@@ -244,7 +284,7 @@ mod tests {
                 *turn = UnitQuaternion::identity().slerp(turn, 0.8);
             }
         }
-        let out = lock(&clip, &styled, &map);
+        let out = lock(&clip, &styled, &map, Hold::default());
         let [was, free, held] = [&clip, &styled, &out].map(|clip| Feet::of(clip, &map).slide_cm_s);
         assert!(free > 2.0 * was, "{was} {free}");
         assert!(held < 1.2 * was + 0.5, "{was} {held}");
@@ -262,7 +302,7 @@ mod tests {
         still.root.fill(root);
         let mut styled = still.clone();
         styled.root.iter_mut().enumerate().for_each(|(frame, root)| root.z += 0.01 * frame as f64);
-        let out = lock(&still, &styled, &map(&clip));
+        let out = lock(&still, &styled, &map(&clip), Hold::default());
         assert!(out.root.iter().all(|at| (at - root).norm() < 0.01));
     }
 }

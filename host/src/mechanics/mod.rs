@@ -8,13 +8,17 @@
 //! | `linear` | the baseline: ridge regression from features to pose |
 //! | [`train`](train()), `stages` | autoencoder, feature network, stacking, fine-tuning; what a checkpoint keeps of them |
 //! | `model` | a trained model, and its pack |
-//! | `play` | decouple, modulate, mix and blend clips |
+//! | `play` | decouple and modulate frame by frame, as the device does |
+//! | `expressive` | expression of a whole clip as a smooth motion |
+//! | `clips` | modulate, mix and blend clips with it |
 //! | `evaluate` | geodesic errors and what is left as expression, clip by clip |
 //! | `propose` | which clips look non-expressive |
 
 mod body;
+mod clips;
 mod dataset;
 mod evaluate;
+mod expressive;
 mod linear;
 mod model;
 pub mod network;
@@ -24,8 +28,10 @@ mod stages;
 mod train;
 
 pub use body::{BodyError, body, measured};
+pub use clips::{Parted, Passage, blend_clips, mix_clip, modulate_clip};
 pub use dataset::{Rows, signed, signs};
 pub use evaluate::{ClipReport, Distances, Report, evaluate};
+pub use expressive::{Expressive, NEW};
 pub use linear::Linear;
 pub use model::MechanicsModel;
 pub use play::{HostMechanics, Overlap, blend, decouple, mix, modulate};

@@ -1,7 +1,5 @@
 //! `kinesic apply`.
 
-mod land;
-
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
@@ -10,6 +8,7 @@ use kinesic::Pack;
 use kinesic::engine::Controls;
 use kinesic::model::ModelMeta;
 use kinesic_host::clip::{Clip, Memory, ReadOptions};
+use kinesic_host::feet::Hold;
 use kinesic_host::limit::{self, Clamps};
 use kinesic_host::pack::PackFile;
 use kinesic_host::prepare::Source;
@@ -21,9 +20,9 @@ use kinesic_host::{components, engines};
 use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
 
-use self::land::{Feet, Judged, On, Place};
 use super::batch::{Batch, FORMATS, Job};
 use super::clips::Reading;
+use super::land::{Feet, Judged, On, Place};
 use super::mask;
 use super::output::{check_motion, print_clamps, print_json, spinner, write_motion};
 
@@ -49,6 +48,7 @@ Examples:
   kinesic apply angry.kin walks/ --out angry-walks/ --format glb
   kinesic apply angry.kin walk.bvh --out as-on-the-device.bvh --on pack
   kinesic apply angry.kin walk.bvh --out feet-held-on-it.bvh --on pack --feet live
+  kinesic apply angry.kin walk.bvh --out same-path.bvh --mask pelvis=0
   kinesic apply angry.kin walk.bvh --out arms-only.bvh --mask '*=0,LeftArm+=1,r_shoulder+=1'
   kinesic apply child.kin jump.csv --out child-jump.bvh --timing learned
   kinesic apply components.kin --stored --out stored.bvh
@@ -75,7 +75,8 @@ pub struct Args {
     #[arg(long, default_value = "1", allow_hyphen_values = true)]
     strength: Curve,
     /// Weights of joints, 0 = untouched, 1 = translated, by the pack's names or canonical ones; JOINT+=W means all joints below
-    /// it too, *=W is the rest
+    /// it too, *=W is the rest. The pelvis stands for the root: pelvis=0 keeps the clip's travel, height and tilt, and held feet stand on the clip's
+    /// spots
     #[arg(long, value_name = "JOINT=W,...")]
     mask: Vec<String>,
     /// Keep the clip's timing, or stretch and squeeze it as learned
@@ -145,6 +146,7 @@ struct Stage<'p> {
     machine: Option<Machine>,
     options: ReadOptions,
     knobs: Knobs,
+    hold: Hold,
 }
 
 /// Greatest strength, whatever its sign.
@@ -173,7 +175,8 @@ pub fn run(args: &Args) -> miette::Result<()> {
     controls.mask = rig.coordinate_weights(&weights);
     let knobs = Knobs { controls, curve: (low < high).then(|| args.strength.clone()) };
     let options = args.reading.options_for(&pack)?;
-    let stage = Stage { args, pack: &pack, rig, machine, options, knobs };
+    let hold = Hold { travels: mask::travels(&weights), ..Hold::default() };
+    let stage = Stage { args, pack: &pack, rig, machine, options, knobs, hold };
     if args.stored {
         check_motion(&args.out, stage.machine.is_some())?;
         let summary = stage.play(None, &args.out)?;
@@ -199,7 +202,9 @@ impl Stage<'_> {
         let clip = source.as_ref().map(|source| source.on_rig(rig, fps)).transpose().into_diagnostic()?;
         let played = play(args, pack, rig, clip.as_ref(), &self.knobs)?;
         let place = Place::choose(args.on, args.feet, pack, source.as_ref())?;
-        let landed = place.land(source.as_ref(), (pack, rig), clip.as_ref(), &played).into_diagnostic()?;
+        let mut landed =
+            place.land(source.as_ref(), (pack, rig), clip.as_ref(), &played.clip, self.hold).into_diagnostic()?;
+        landed.clip = played.on_clock(&landed.clip, clip.as_ref().unwrap_or(&played.clip));
         let (styled, limits) = match limit::play(pack, rig, &landed.clip).into_diagnostic()? {
             Some((clip, clamps)) => (Cow::Owned(clip), Some(clamps)),
             None => (Cow::Borrowed(&landed.clip), None),

@@ -1,10 +1,10 @@
-//! Where the result of `kinesic apply` lands: on the clip's own skeleton or on the pack's, and what its feet do there.
+//! Where the result of a command lands: on the clip's own skeleton or on the pack's, what its feet do there, and how good it is.
 
 use clap::ValueEnum;
 use kinesic::Pack;
 use kinesic::model::LoadError;
 use kinesic_host::clip::{Clip, JointMap};
-use kinesic_host::feet::{self, IN_STEP, OUT_OF_STEP};
+use kinesic_host::feet::{self, Hold, IN_STEP, OUT_OF_STEP};
 use kinesic_host::own_body::OwnBody;
 use kinesic_host::prepare::Source;
 use kinesic_host::quality::{Quality, measure};
@@ -12,9 +12,8 @@ use kinesic_host::rig::Rig;
 use miette::miette;
 use serde::Serialize;
 
-use super::Played;
-use crate::commands::figure::figure;
-use crate::commands::quality;
+use super::figure::figure;
+use super::quality;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum On {
@@ -38,6 +37,8 @@ pub enum Feet {
 pub struct Place {
     on: On,
     feet: Feet,
+    /// What is said of free feet.
+    free: &'static str,
 }
 
 /// Quality of the clip and of the result.
@@ -45,6 +46,9 @@ pub struct Place {
 pub struct Judged {
     #[serde(skip_serializing_if = "Option::is_none")]
     source: Option<Quality>,
+    /// Of the second clip, where a result is made of two.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    second: Option<Quality>,
     #[serde(skip_serializing_if = "Option::is_none")]
     styled: Option<Quality>,
     /// Correlation of each foot, left and right, with that of the clip; absent where it hardly swings.
@@ -78,36 +82,55 @@ impl Place {
             let help = if own { "add --on pack, or hold feet with --feet lock" } else { "leave --feet out" };
             return Err(miette!(help = help, "--feet live: {why}"));
         }
-        Ok(Self { on, feet: feet.unwrap_or(if on == On::Clip { Feet::Lock } else { Feet::Free }) })
+        Ok(Self { on, feet: feet.unwrap_or(if on == On::Clip { Feet::Lock } else { Feet::Free }), free: "free" })
     }
 
-    /// The result of playing `clip`, which is `source` on the rig. A robot has no feet, a stored motion no clip.
+    /// The same with feet that are let go, since held ones would jerk.
+    pub fn let_go(&self) -> Self {
+        Self { on: self.on, feet: Feet::Free, free: "free: held feet would jerk" }
+    }
+
+    /// Whether the result has the clip's skeleton.
+    pub fn is_own(&self) -> bool {
+        self.on == On::Clip
+    }
+
+    /// What was made of `clip`, which is `source` on the rig. A robot has no feet, a stored motion no clip.
     pub fn land<'a>(
         &self,
         source: Option<&'a Source>,
         (pack, rig): (&Pack, &'a Rig),
         clip: Option<&'a Clip>,
-        played: &Played,
+        played: &Clip,
+        hold: Hold,
     ) -> Result<Landed<'a>, LoadError> {
         let stands = source.is_some_and(|source| source.machine.is_some());
         let Some(clip) = clip.filter(|_| !stands) else {
-            let clip = played.on_clock(&played.clip, &played.clip);
-            let map = rig.frames().travels().then_some(&rig.map);
-            return Ok(Landed { clip, from: None, map, step: None, feet: None });
+            return Ok(Landed {
+                clip: played.clone(),
+                from: None,
+                second: None,
+                map: rig.frames().travels().then_some(&rig.map),
+                step: None,
+                feet: None,
+            });
         };
         let (from, styled, map) = match source.filter(|_| self.on == On::Clip) {
-            Some(source) => (&source.clip, OwnBody::new(source, rig).carry(clip, &played.clip), &source.map),
-            None => (clip, played.clip.clone(), &rig.map),
+            Some(source) => (&source.clip, OwnBody::new(source, rig).carry(clip, played), &source.map),
+            None => (clip, played.clone(), &rig.map),
         };
+        let mut styled = styled;
+        if hold.soft > 0.0 {
+            feet::keep_knees(from, &mut styled, map, 2.0 * hold.soft);
+        }
         let step = feet::kept_step((from, map), (&styled, map));
         let (styled, feet) = match self.feet {
-            Feet::Free => (styled, "free"),
+            Feet::Free => (styled, self.free),
             Feet::Lock | Feet::Live if out_of_step(&step) => (styled, "free: out of step with the clip"),
-            Feet::Lock => (feet::lock(from, &styled, map), "locked"),
+            Feet::Lock => (feet::lock(from, &styled, map, hold), "locked"),
             Feet::Live => (feet::live(pack, rig, from, &styled)?, "held as on the device"),
         };
-        let clip = played.on_clock(&styled, clip);
-        Ok(Landed { clip, from: Some(from), map: Some(map), step: Some(step), feet: Some(feet) })
+        Ok(Landed { step: Some(step), feet: Some(feet), ..Landed::of_two(styled, from, None, map) })
     }
 }
 
@@ -120,20 +143,39 @@ pub struct Landed<'a> {
     /// The motion.
     pub clip: Clip,
     from: Option<&'a Clip>,
+    second: Option<&'a Clip>,
     map: Option<&'a JointMap>,
     step: Option<[Option<f64>; 2]>,
     feet: Option<&'static str>,
 }
 
-impl Landed<'_> {
+impl<'a> Landed<'a> {
+    /// What was made of one or two motions on the skeleton whose joints `map` names.
+    pub fn of_two(clip: Clip, from: &'a Clip, second: Option<&'a Clip>, map: &'a JointMap) -> Self {
+        Self { clip, from: Some(from), second, map: Some(map), step: None, feet: None }
+    }
+
     /// Quality of the clip and of what is written.
     pub fn judge(&self, written: &Clip) -> Judged {
         let quality = |clip: &Clip| self.map.map(|map| measure(clip, map));
-        Judged { source: self.from.and_then(quality), styled: quality(written), step: self.step, feet: self.feet }
+        Judged {
+            source: self.from.and_then(quality),
+            second: self.second.and_then(quality),
+            styled: quality(written),
+            step: self.step,
+            feet: self.feet,
+        }
     }
 }
 
 impl Judged {
+    /// Jerk of the result over that of the clip, or of the rougher one of two.
+    pub fn jerk_ratio(&self) -> Option<f64> {
+        let sources = self.source.iter().chain(&self.second).map(|quality| quality.jerk_m_s3);
+        let most = sources.fold(0.0, f64::max);
+        self.styled.filter(|_| most > 0.0).map(|styled| styled.jerk_m_s3 / most)
+    }
+
     /// Feet in a few words, for a line about one of many clips.
     pub fn line(&self) -> String {
         let slides = self.source.as_ref().zip(self.styled.as_ref());
@@ -144,8 +186,8 @@ impl Judged {
 
     /// Prints the table, and what is wrong with the feet.
     pub fn print(&self) {
-        let rows = self.source.iter().map(|q| ("source", q)).chain(self.styled.iter().map(|q| ("styled", q)));
-        match &rows.collect::<Vec<_>>()[..] {
+        let sources = self.source.iter().map(|q| ("source", q)).chain(self.second.iter().map(|q| ("second", q)));
+        match &sources.chain(self.styled.iter().map(|q| ("styled", q))).collect::<Vec<_>>()[..] {
             [] => {}
             rows => quality::print(rows),
         }
