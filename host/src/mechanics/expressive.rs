@@ -5,7 +5,7 @@
 //! difference `E = O B^-1` and its activity are smoothed without delay, and `E*` is the one times the other. What is fast in the clip stays
 //! its own: `B' = E*^-1 O` holds it, and it is never scaled.
 
-use kinesic::mechanics::{FARTHEST, FEATURES, MechanicsState};
+use kinesic::mechanics::{FEATURES, MechanicsState};
 use kinesic::{LoadError, Pack, Pose};
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -83,10 +83,9 @@ impl Expressive {
         0.5 * (2.0 * std::f64::consts::LN_2).sqrt() / (std::f64::consts::PI * self.width)
     }
 
-    /// Part of the numbers that the network saw which are further from its training than [`NEW`] deviations, percent. Past [`FARTHEST`]
-    /// deviations they are cut.
+    /// Part of the numbers that the network saw which are further from its training than [`NEW`] deviations, percent. Past
+    /// [`FARTHEST`](kinesic::mechanics::FARTHEST) deviations they are cut.
     pub fn new_percent(&self) -> f64 {
-        debug_assert!(NEW < FARTHEST);
         self.new_percent
     }
 
