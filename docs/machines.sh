@@ -64,7 +64,7 @@ train() {
         ;;
     components) "$@" "$kinesic" train components --content short/neutral.bvh --style short/weary.bvh --no-report --out "$out" ;;
     mechanics)
-        "$@" "$kinesic" train mechanics --clips short/neutral.bvh --pool short/weary.bvh --hidden 8 --feature-hidden 8 --epochs 2 --hold-out 0 \
+        "$@" "$kinesic" train mechanics --clips short/neutral.bvh --pool short/weary.bvh --hidden 8 --feature-hidden 8 --epochs 2 --hold-out 0 --force \
             --no-report --out "$out"
         ;;
     emotion) "$@" "$kinesic" train emotion --labels labels.tsv --order 'weary>neutral' --hold-out 0 --no-report --out "$out" ;;

@@ -180,8 +180,20 @@ fn every_training_writes_a_report_beside_its_pack() {
         assert!(read("c.report.html").contains(part), "no {part} in the report of components");
     }
     let clips = ["neutral.bvh", "unseen.bvh", "expected.bvh"];
-    let train =
-        ["train", "mechanics", "--hidden", "8", "--epochs", "2", "--out", "m.kin", "--report", "page.html", "--clips"];
+    let train = [
+        "train",
+        "mechanics",
+        "--hidden",
+        "8",
+        "--epochs",
+        "2",
+        "--force",
+        "--out",
+        "m.kin",
+        "--report",
+        "page.html",
+        "--clips",
+    ];
     succeed(&[&train[..], &clips].concat(), at);
     for part in ["linear regression", "fine-tuning", "<svg", "polyline"] {
         assert!(read("page.html").contains(part), "no {part} in the report of mechanics");

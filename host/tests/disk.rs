@@ -44,7 +44,7 @@ const WRITERS: [(&str, &str); 5] = [
     ("modulate mechanics.kin walk.bvh --amount 2 --out x.bvh", "x.bvh"),
     ("decouple mechanics.kin walk.bvh --mechanics x.bvh", "x.bvh"),
     ("train translate --pair walk.bvh weary.bvh --form per-joint --order 2 --align uniform --out x.kin", "x.kin"),
-    ("train mechanics --clips walk.bvh --hold-out 0 --hidden 4 --epochs 1 --out x.kin", "x.kin"),
+    ("train mechanics --clips walk.bvh --hold-out 0 --hidden 4 --epochs 1 --force --out x.kin", "x.kin"),
 ];
 
 #[test]

@@ -79,7 +79,7 @@ fn a_training_that_learns_nothing_is_refused() {
     let at = folder.path();
     refused(at, "train translate --pair walk.bvh same.bvh --out t.kin", "nothing to learn");
     refused(at, "train translate --pair still.bvh still.bvh --out t.kin", "nothing to learn");
-    refused(at, "train components --content walk.bvh --style same.bvh -k 5 --out c.kin", "nothing to learn");
+    refused(at, "train components --content walk.bvh --style same.bvh -k 5 --out c.kin", "learned nothing");
     refused(at, "train components --content walk.bvh --style still.bvh -k 5 --out c.kin", "does not move");
     let nothing = "train components --content walk.bvh --style weary.bvh -k 5 --style-weight 0 --posture 0 --out c.kin";
     refused(at, nothing, "than doing nothing");

@@ -134,6 +134,6 @@ fn a_checkpoint_of_another_training_is_refused() {
     refused(&format!("{TRAIN} --resume"), "no whole checkpoint");
     refused(&TRAIN.replace("every 0", "every -1"), "expected seconds from 0 up");
     // Without --resume it is told, left alone, and replaced.
-    let output = succeed(at, &TRAIN.replace("--epochs 60", "--epochs 1"));
+    let output = succeed(at, &TRAIN.replace("--epochs 60", "--epochs 1 --force"));
     assert!(String::from_utf8_lossy(&output.stderr).contains("left by a stopped training"));
 }

@@ -448,7 +448,7 @@ fn private_packs_and_pages_hold_no_path_and_no_command() {
     std::fs::write(secret.join("m.kin"), models::mechanics().bytes()).unwrap();
     let made = [
         "train translate --pair client-7/a.bvh client-7/b.bvh --style tired --form per-joint --order 2 --align uniform --out t.kin",
-        "train mechanics --clips client-7/a.bvh client-7/b.bvh --hidden 4 --epochs 1 --out n.kin",
+        "train mechanics --clips client-7/a.bvh client-7/b.bvh --hidden 4 --epochs 1 --force --out n.kin",
         "train components --content client-7/a.bvh --style client-7/b.bvh -k 4 --out c.kin",
         "quantize t.kin --clips client-7/a.bvh --out q.kin",
         "view t.kin client-7/a.bvh --target client-7/b.bvh --out v.html",

@@ -401,6 +401,8 @@ fn hold(model: &mut EmotionModel, rig: &Rig, motions: &[Motion]) -> Result<Vec<S
             let (found, broken) = bounds.end(rig, [middle[index], asked].map(f64::from), once)?;
             if let Some(broken) = broken {
                 attribute.strength[at] = found as f32;
+                // Nothing is minus zero.
+                let [found, asked] = [found, f64::from(asked)].map(|x| (100.0 * x).round() / 100.0 + 0.0);
                 notes.push(format!(
                     "{}: the {which} plausible strength is {found:.2}, not {asked:.2} as of the motions: at that, {broken}",
                     attribute.name
@@ -412,6 +414,7 @@ fn hold(model: &mut EmotionModel, rig: &Rig, motions: &[Motion]) -> Result<Vec<S
         for quarter in [1.0, 2.0, 3.0] {
             let strength = low + quarter / 4.0 * (high - low);
             if let Some(broken) = bounds.broken(rig, &[once(strength)?]) {
+                let strength = (100.0 * strength).round() / 100.0 + 0.0;
                 notes.push(format!("{}: at strength {strength:.2}, {broken}", attribute.name));
             }
         }

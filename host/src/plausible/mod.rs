@@ -23,6 +23,8 @@ const STEP: f64 = 0.25;
 const SPEED: f64 = 1.5;
 /// The jerk may be so many times that of the rougher side of the training clips.
 const JERK: f64 = 1.5;
+/// What a recorded walk of a person jerks, m/s^3: less is smooth, however even the training clips are.
+const SMOOTH: f64 = 100.0;
 /// The centre of mass may be so much farther from the foot that stands, as a share of the leg's length.
 const REACH: f64 = 0.15;
 /// A foot may stand for so small a share of the time for which it stands on the side of the training clips where it stands less.
@@ -95,16 +97,17 @@ impl Bounds {
     /// What motions do that the training clips do not.
     pub fn broken(&self, rig: &Rig, played: &[Clip]) -> Option<Broken> {
         let found = Figures::of(rig, played.iter());
-        self.rough(&found).or_else(|| (self.seen.outside(rig, &found) > 1.0).then_some(Broken::Joints))
+        self.rough(rig, &found).or_else(|| (self.seen.outside(rig, &found) > 1.0).then_some(Broken::Joints))
     }
 
     /// The same without the joints' rotations.
-    fn rough(&self, found: &Figures) -> Option<Broken> {
+    fn rough(&self, rig: &Rig, found: &Figures) -> Option<Broken> {
         let seen = &self.seen;
         if found.speed_m_s > SPEED * seen.speed_m_s {
             return Some(Broken::Speed);
         }
-        if found.jerk_m_s3 > JERK * seen.jerk_m_s3 {
+        let smooth = if rig.frames().travels() { SMOOTH } else { 0.0 };
+        if found.jerk_m_s3 > (JERK * seen.jerk_m_s3).max(smooth) {
             return Some(Broken::Jerk);
         }
         let (Some(stood), stands) = (seen.stand, found.stand) else { return None };
@@ -151,7 +154,7 @@ impl Bounds {
             let strength = found.largest + STEP;
             let figures = Figures::of(rig, play(strength)?.iter());
             let outside = || (strength > 1.0 && turned.outside(rig, &figures) > 1.0).then_some(Broken::Joints);
-            found.broken = self.rough(&figures).or_else(outside);
+            found.broken = self.rough(rig, &figures).or_else(outside);
             if strength <= 1.0 {
                 turned = turned.or(figures);
             }
