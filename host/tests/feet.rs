@@ -17,7 +17,8 @@ fn kinesic(arguments: &[&std::ffi::OsStr]) -> Value {
 /// What `kinesic apply --on pack` says of a clip: `[source, styled]`, slide in cm/s and jerk in m/s^3.
 fn applied(pack: &Path, clip: &Path, feet: &str, out: &Path) -> [[f64; 2]; 2] {
     let of = |path: &Path| path.as_os_str().to_owned();
-    let words = ["apply", "--on", "pack", "--json", "--overwrite", "--feet", feet, "--out"].map(std::ffi::OsString::from);
+    let words =
+        ["apply", "--on", "pack", "--json", "--overwrite", "--feet", feet, "--out"].map(std::ffi::OsString::from);
     let arguments: Vec<_> = words.into_iter().chain([of(out), of(pack), of(clip)]).collect();
     let said = kinesic(&arguments.iter().map(AsRef::as_ref).collect::<Vec<_>>());
     ["source", "styled"].map(|who| ["foot_slide_cm_s", "jerk_m_s3"].map(|what| said[who][what].as_f64().unwrap()))
@@ -33,7 +34,8 @@ fn held_feet_slide_no_more_than_the_clips_and_nothing_shakes() {
         let pair = ["neutral", style].map(|style| data.join(format!("xia/{style}_01_000.bvh")));
         let [neutral, styled] = pair.each_ref().map(|path| path.as_os_str());
         let words = ["train", "translate", "--json", "--pair"].map(std::ffi::OsStr::new);
-        let arguments: Vec<_> = words.into_iter().chain([neutral, styled, "--out".as_ref(), pack.as_os_str()]).collect();
+        let arguments: Vec<_> =
+            words.into_iter().chain([neutral, styled, "--out".as_ref(), pack.as_os_str()]).collect();
         kinesic(&arguments);
         packs.push(pack);
     }
@@ -46,7 +48,9 @@ fn held_feet_slide_no_more_than_the_clips_and_nothing_shakes() {
             let [free, live, lock] = ["free", "live", "lock"].map(|feet| applied(pack, &path, feet, &out));
             let ([[slide, _], [free, rough]], [_, [live, shaken]], [_, [lock, locked]]) = (free, live, lock);
             let name = pack.file_stem().unwrap().to_string_lossy();
-            println!("| {name} | {clip} | {slide:.1} | {free:.1} | {live:.1} | {lock:.1} | {rough:.0} | {shaken:.0} | {locked:.0} |");
+            println!(
+                "| {name} | {clip} | {slide:.1} | {free:.1} | {live:.1} | {lock:.1} | {rough:.0} | {shaken:.0} | {locked:.0} |"
+            );
             assert!(free > 1.3 * slide, "{name}, {clip}: free feet slide at {free}, the clip's at {slide}");
             assert!(live < 1.1 * slide, "{name}, {clip}: held feet slide at {live}, the clip's at {slide}");
             assert!(shaken < 1.3 * rough, "{name}, {clip}: jerk {shaken}, of the free one {rough}");
