@@ -322,6 +322,16 @@ void kinesic_pipeline_step_coordinates(const KinesicPipeline *model,
 size_t kinesic_pipeline_coordinates(const KinesicPipeline *model);
 
 /**
+ * How far the body may be carried over the ground from where the source stands, m: changed steps make another way, which counts in full up to
+ * half the reach and then ever less. A loaded model has 4; infinity is as far as it gets.
+ *
+ * # Safety
+ * `model` was loaded, or is null.
+ */
+void kinesic_pipeline_set_reach(KinesicPipeline *model,
+                                float reach);
+
+/**
  * Strength of translator and components from now on: 0 = the source, 1 = as learned, beyond = exaggerated.
  *
  * # Safety
@@ -393,6 +403,16 @@ void kinesic_translator_step(const KinesicTranslator *model,
                              KinesicTranslatorState *state,
                              const KinesicPose *source,
                              KinesicPose *styled);
+
+/**
+ * How far the body may be carried over the ground from where the source stands, m: changed steps make another way, which counts in full up to
+ * half the reach and then ever less. A loaded model has 4; infinity is as far as it gets.
+ *
+ * # Safety
+ * `model` was loaded, or is null.
+ */
+void kinesic_translator_set_reach(KinesicTranslator *model,
+                                  float reach);
 
 /**
  * Strength from now on: 0 = the source, 1 = as learned, beyond = exaggerated.

@@ -112,6 +112,8 @@ fn pack(rig: &Rig, motion: &Locals, bank: BankModel, timing_states: Vec<f64>) ->
         bank,
         timing: TimingModel { bias: 0.1, range: [-1.0, 1.0], input: vec![0.002; channels], states: timing_states },
         strength: [0.0, 1.5],
+        gate: None,
+        experts: None,
     };
     let provenance = Provenance { tool: "kinesic-firmware-sim".to_owned(), seed: SEED, ..Provenance::default() };
     model.pack(rig, &provenance)
