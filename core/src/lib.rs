@@ -33,7 +33,7 @@
 //! # fn write_pose(_: &Pose<19>) {}
 //! fn run(bytes: &'static [u8]) -> Result<(), kinesic::LoadError> {
 //!     let pack = Pack::load(bytes)?;
-//!     let pipeline = Pipeline::<Translator<20, 82>, 20>::load(&pack)?;
+//!     let pipeline = Pipeline::<Translator<20, 60>, 20>::load(&pack)?;
 //!     let mut state = PipelineState::new();
 //!     let mut styled = Pose::identity();
 //!     for _ in 0..100 {
@@ -46,7 +46,7 @@
 //! ```
 //!
 //! A robot whose servos are the [coordinates](rig) leaves poses out: [`Pipeline::step_coordinates`]. Joint limits are one more engine:
-//! `Pipeline::<(Translator<20, 82>, Limiter<20>), 20>`.
+//! `Pipeline::<(Translator<20, 60>, Limiter<20>), 20>`.
 //!
 //! [`step`]: Pipeline::step
 #![no_std]

@@ -16,8 +16,8 @@ mod motion;
 fn expected() -> String {
     let file = PackFile::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../models/weary.kin")).unwrap();
     let pack = file.pack().unwrap();
-    let pipeline = Pipeline::<Translator<20, 82>, 20>::load(&pack).unwrap();
-    let mut state = PipelineState::<TranslatorState<20, 82>, 20>::new();
+    let pipeline = Pipeline::<Translator<20, 60>, 20>::load(&pack).unwrap();
+    let mut state = PipelineState::<TranslatorState<20, 60>, 20>::new();
     state.engine.controls.strength = 0.8;
     let mut styled = Pose::identity();
     let mut lines = String::new();

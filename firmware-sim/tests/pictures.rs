@@ -14,9 +14,10 @@ use kinesic_host::gait::{Manner, walk};
 use kinesic_host::models;
 use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_host::prepare::Source;
-use kinesic_host::report::{latency, stick_figures};
+use kinesic_host::report::latency;
 use kinesic_host::rig::Rig;
 use kinesic_host::robot::Machine;
+use kinesic_host::sheet::{self, Actor, sheet};
 use kinesic_host::translate::{Settings, play};
 use kinesic_host::view::{self, View, ViewClip, ViewPack};
 
@@ -50,8 +51,17 @@ fn walks_before_and_after() {
     });
     let result = play(&pack, &rig, &source, &Settings::default()).unwrap();
     let rows = [("a walk", &source), ("through models/weary.kin", &result), ("the same walk, weary", &target)];
+    let rows = rows.map(|(name, clip)| {
+        let actor = Actor::body(name, clip.clone(), JointMap::detect(&clip.skeleton).as_ref());
+        let moments = actor.even(8);
+        (actor, moments)
+    });
     // On white: pages are read on dark grounds too.
-    let svg = stick_figures(&rows).replacen(">\n", ">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n", 1);
+    let svg = sheet(&rows, sheet::View::Oblique, 120.0).unwrap().svg().replacen(
+        ">\n",
+        ">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
+        1,
+    );
     drawing("walk.svg", &svg);
 }
 

@@ -91,7 +91,9 @@ mod tests {
         let slow = |frame: usize| 0.5 * (0.02 * frame as f64).sin();
         let leaps = (0..200).map(|frame| turn(slow(frame) + if frame == 90 { 0.7 } else { 0.0 }));
         for (frame, vector) in steady(leaps, 3, 4.0).into_iter().enumerate() {
-            assert!((vector.y - slow(frame)).abs() < 0.02, "{frame}: {vector}");
+            // At the ends the bell has one side only.
+            let allowed = if (10..190).contains(&frame) { 0.02 } else { 0.05 };
+            assert!((vector.y - slow(frame)).abs() < allowed, "{frame}: {vector}");
         }
         assert!(steady((0..9).map(|_| turn(0.0)), 3, 4.0).iter().all(|vector| *vector == Vector3::zeros()));
     }

@@ -73,7 +73,9 @@ fn another_walk_is_familiar_and_a_wave_is_not() {
     assert!((0.05..0.3).contains(&turned(&waved.clip)), "{}", turned(&waved.clip));
     // Strength 0 is the clip whatever is familiar.
     let none = Settings { controls: Controls { strength: 0.0, ..Controls::default() }, ..Settings::default() };
-    assert!(played(&file, &rig, &wave, &none).clip.rotations == wave.rotations);
+    let same = played(&file, &rig, &wave, &none).clip;
+    let far = same.rotations.iter().zip(&wave.rotations).map(|(a, b)| a.angle_to(b)).fold(0.0, f64::max);
+    assert!(far < 1e-5, "{far}");
 }
 
 #[test]

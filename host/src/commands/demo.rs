@@ -98,7 +98,8 @@ pub fn run(args: &Args) -> miette::Result<()> {
         source: rig.locals_of(&neutral),
         target: rig.locals_of(&weary),
     };
-    let options = TrainOptions { form: FormChoice::WholeBody, ..TrainOptions::default() };
+    // One made-up gait says nothing of how far people's walks differ.
+    let options = TrainOptions { form: FormChoice::WholeBody, gate: false, ..TrainOptions::default() };
     let mut trained = train(&rig, &[pair], "weary", FPS, &options, &|_| {}).into_diagnostic()?;
     let turns = Turns::of_pairs(&rig, [(&neutral, &weary)]).into_diagnostic()?;
     let provenance = Provenance {
