@@ -16,7 +16,7 @@ const SPEED: f64 = 1.5;
 
 fn main() {
     let args: Vec<String> = std::env::args().skip(1).collect();
-    if args.is_empty() || args.len() % 3 != 0 {
+    if args.is_empty() || !args.len().is_multiple_of(3) {
         stop(&"expected SOURCE TARGET PACK.kin, once or more");
     }
     println!("| pack | by top speed alone | by playing | what ends it |");
