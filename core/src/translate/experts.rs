@@ -59,7 +59,7 @@ impl<'a> Experts<'a> {
         let filters = filters.get(..self.reads).unwrap_or_default();
         for (expert, weight) in sight.near {
             let (Some(matrix), Some(bias)) =
-                (self.input.part(self.rank / TILE, expert), self.bias.chunks_exact(self.rank).nth(expert))
+                (self.input.part(self.rank / TILE, expert), self.bias.chunks_exact(self.rank.max(1)).nth(expert))
             else {
                 continue;
             };

@@ -196,7 +196,7 @@ pub fn train(
     let columns = |attribute: usize| inputs.iter().map(move |row| row[attribute]).collect::<Vec<f64>>();
     let plain = |values: Vec<f64>| quantiles(values).map(|x| x as f32);
     let back = material.back(made.scale);
-    let mut model = EmotionModel {
+    let model = EmotionModel {
         motion: motion.to_owned(),
         frame_rate: FRAME_RATE as f32,
         attributes: attributes
@@ -223,7 +223,7 @@ pub fn train(
         levers: material.levers.clone(),
         network,
     };
-    notes.extend(hold(&mut model, &material.rig, &motions)?);
+    notes.extend(broken_at(&model, &material.rig, &motions)?);
     Ok(Trained {
         keyframe_error: keyframe_error(&motions, &keyframes),
         network_error: material.error(&made, &model, &inputs),
@@ -374,9 +374,9 @@ fn quantiles(mut values: Vec<f64>) -> [f64; 2] {
     if high - low > 1e-3 { [low, high] } else { [low - 1e-3, high + 1e-3] }
 }
 
-/// Plays the ends of every range, the other strengths in the middle of theirs, and brings in those at which the motion leaves what the training
-/// motions do. Says which, and where it does so between the ends.
-fn hold(model: &mut EmotionModel, rig: &Rig, motions: &[Motion]) -> Result<Vec<String>, RigError> {
+/// Plays five strengths of every range, the other attributes in the middle of theirs, and says at which the motion leaves what the training motions
+/// do. The range stays that of the recordings: a dial goes as far as they went.
+fn broken_at(model: &EmotionModel, rig: &Rig, motions: &[Motion]) -> Result<Vec<String>, RigError> {
     let clip = |motion: &Motion| {
         let start = motion.segment.start;
         motion.example.clip.slice(start..start + motion.segment.frames())
@@ -388,7 +388,7 @@ fn hold(model: &mut EmotionModel, rig: &Rig, motions: &[Motion]) -> Result<Vec<S
     let mut middle = Strengths::default();
     middle.iter_mut().zip(&model.attributes).for_each(|(to, a)| *to = a.strength[0].midpoint(a.strength[1]));
     let mut notes = Vec::new();
-    for (index, attribute) in model.attributes.iter_mut().enumerate() {
+    for (index, attribute) in model.attributes.iter().enumerate() {
         let once = |strength: f64| {
             let mut strengths = middle;
             strengths[index] = strength as f32;
@@ -396,24 +396,11 @@ fn hold(model: &mut EmotionModel, rig: &Rig, motions: &[Motion]) -> Result<Vec<S
             let seconds = f64::from(play(&pack, &still)?.round[0]);
             Ok::<_, RigError>(play(&pack, &Settings { seconds: Some(seconds), ..still })?.clip)
         };
-        for (at, which) in ["lowest", "highest"].into_iter().enumerate() {
-            let asked = attribute.strength[at];
-            let (found, broken) = bounds.end(rig, [middle[index], asked].map(f64::from), once)?;
-            if let Some(broken) = broken {
-                attribute.strength[at] = found as f32;
-                // Nothing is minus zero.
-                let [found, asked] = [found, f64::from(asked)].map(|x| (100.0 * x).round() / 100.0 + 0.0);
-                notes.push(format!(
-                    "{}: the {which} plausible strength is {found:.2}, not {asked:.2} as of the motions: at that, {broken}",
-                    attribute.name
-                ));
-            }
-        }
-        // A range has two ends, so what breaks between them can only be said.
         let [low, high] = attribute.strength.map(f64::from);
-        for quarter in [1.0, 2.0, 3.0] {
+        for quarter in [0.0, 1.0, 2.0, 3.0, 4.0] {
             let strength = low + quarter / 4.0 * (high - low);
             if let Some(broken) = bounds.broken(rig, &[once(strength)?]) {
+                // Nothing is minus zero.
                 let strength = (100.0 * strength).round() / 100.0 + 0.0;
                 notes.push(format!("{}: at strength {strength:.2}, {broken}", attribute.name));
             }

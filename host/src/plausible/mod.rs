@@ -119,25 +119,6 @@ impl Bounds {
         stands.is_some_and(leans).then_some(Broken::Balance)
     }
 
-    /// How far from `middle` to `end` strengths may go: the first of all eighths from the end back to half of the way at which nothing breaks,
-    /// and what breaks farther out. The half of the way is taken as it is.
-    pub fn end<E>(
-        &self,
-        rig: &Rig,
-        [middle, end]: [f64; 2],
-        mut play: impl FnMut(f64) -> Result<Clip, E>,
-    ) -> Result<(f64, Option<Broken>), E> {
-        let at = |eighths: u8| middle + f64::from(eighths) / 8.0 * (end - middle);
-        let mut outside = None;
-        for eighths in [8, 7, 6, 5] {
-            match self.broken(rig, &[play(at(eighths))?]) {
-                None => return Ok((at(eighths), outside)),
-                Some(broken) => outside = outside.or(Some(broken)),
-            }
-        }
-        Ok((at(4), outside))
-    }
-
     /// Strengths from a quarter to `limit` are played in turn; the first that breaks a bound is the first that is not plausible.
     ///
     /// Between source and target a joint passes where neither of them is, so joints are looked at beyond strength 1, and may go farther than they
@@ -218,19 +199,13 @@ mod tests {
     }
 
     #[test]
-    fn an_end_that_breaks_is_brought_in() {
+    fn what_is_played_too_fast_jerks() {
         let plain = walk(&Manner::NEUTRAL, 3.0, 60.0, 0.0, 3);
         let map = crate::clip::JointMap::choose(&plain.skeleton, None).unwrap().unwrap();
         let rig = Rig::new(&plain.skeleton, &map).unwrap();
         let bounds = Bounds::new(&rig, std::iter::once(&plain), std::iter::empty());
-        let faster = |strength: f64| {
-            let mut clip = plain.clone();
-            clip.frame_time /= strength;
-            Ok::<_, Infallible>(clip)
-        };
-        let (end, broken) = bounds.end(&rig, [1.0, 1.1], faster).unwrap_or_else(|never| match never {});
-        assert_eq!((end, broken), (1.1, None));
-        let (end, broken) = bounds.end(&rig, [1.0, 1.2], faster).unwrap_or_else(|never| match never {});
-        assert!(end < 1.2 && end > 1.1 && broken == Some(Broken::Jerk), "{end} {broken:?}");
+        let faster = |by: f64| Clip { frame_time: plain.frame_time / by, ..plain.clone() };
+        assert_eq!(bounds.broken(&rig, &[faster(1.1)]), None);
+        assert_eq!(bounds.broken(&rig, &[faster(1.2)]), Some(Broken::Jerk));
     }
 }
