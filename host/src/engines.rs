@@ -1,5 +1,5 @@
 //! What the host knows of every engine: one registry, one arm per engine. `inspect`, `apply`, `view`, `export --rust` and the golden packs ask
-//! it. Only a learned clock and a stored motion belong to one engine each, and `apply` asks for these by name.
+//! it. A learned clock, what is familiar and a stored motion belong to one engine each, and `apply` asks for these by name.
 
 use kinesic::Pack;
 use kinesic::mechanics::Modulation;
@@ -118,7 +118,7 @@ impl Known for TranslatorMeta<'_> {
     fn player(&self) -> Option<Player> {
         let play: Play = |pack, rig, clip, knobs| {
             let Knobs { controls, curve } = knobs.clone();
-            let settings = translate::Settings { controls, curve, ..translate::Settings::default() };
+            let settings = translate::Settings { controls, curve, live: true, ..translate::Settings::default() };
             translate::play(pack, rig, clip, &settings)
         };
         Some(Player { order: 0, plausible: self.strength, applies: true, play })

@@ -60,6 +60,12 @@ fn another_walk_is_familiar_and_a_wave_is_not() {
     let other = walk(&Manner { cadence: 1.0, stride: 0.38, arms: 0.5, ..Manner::NEUTRAL }, 4.0, FPS, 1.0, 5);
     let walked = played(&file, &rig, &other, &Settings::default());
     assert_eq!(walked.unfamiliar_percent(), Some(0.0));
+    // A live stream has not seen the walk before it begins: the style comes within the first second.
+    let live = played(&file, &rig, &other, &Settings { live: true, ..Settings::default() });
+    let familiar = live.familiar.as_ref().unwrap();
+    assert!(familiar[0] < 0.5 && familiar[60..].iter().all(|familiar| *familiar > 0.9), "{familiar:?}");
+    let whole = walked.familiar.as_ref().unwrap();
+    assert!(whole.iter().zip(familiar).skip(150).all(|(a, b)| (a - b).abs() < 0.02));
     let wave = wave_of(2.2);
     let waved = played(&file, &rig, &wave, &Settings::default());
     assert!(waved.unfamiliar_percent().unwrap() > 99.0, "{:?}", waved.unfamiliar_percent());

@@ -14,7 +14,7 @@ use kinesic_host::engines::known;
 use kinesic_host::face::synthetic;
 use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_host::quantise::{to_int8, to_int16};
-use kinesic_host::translate::FormChoice;
+use kinesic_host::translate::{BankModel, ExpertModel, FormChoice, GateModel};
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
 use robot::small;
@@ -30,7 +30,8 @@ const GOLDEN: [(&str, FormChoice, usize); 2] =
 type Make = fn() -> Vec<u8>;
 
 /// The other kinds: small packs of drawn numbers.
-const MADE: [(&str, Make); 8] = [
+const MADE: [(&str, Make); 9] = [
+    ("translator-several.kin", several),
     ("translator-whole-body-i16.kin", whole_body_int16),
     ("translator-per-joint-i16.kin", per_joint_int16),
     ("mechanics.kin", engines::mechanics),
@@ -40,6 +41,34 @@ const MADE: [(&str, Make); 8] = [
     ("emotion.kin", emotion_pack),
     ("limits.kin", engines::limits_pack),
 ];
+
+/// A gate and experts of drawn numbers behind the whole body's model.
+fn several() -> Vec<u8> {
+    const CLUSTERS: usize = 4;
+    const FEATURES: usize = 8;
+    const RANK: usize = 8;
+    let mut random = engines::Random(11);
+    let mut values = |count: usize, size: f64| (0..count).map(|_| size * f64::from(random.unit())).collect::<Vec<_>>();
+    let mut trained = common::trained(FormChoice::WholeBody, 24);
+    let model = &mut trained.model;
+    let channels = model.mean.len();
+    let BankModel::WholeBody { project, transition, .. } = &model.bank else { panic!("another form") };
+    let reads = 2 * transition.len() + project.len() / channels;
+    model.gate = Some(GateModel {
+        project: values(FEATURES * channels, 0.3),
+        speed: vec![2.0; FEATURES],
+        centres: values(2 * CLUSTERS * FEATURES, 1.0).as_chunks::<2>().0.to_vec(),
+        rates: [0.08, 0.04, 0.15, 0.1],
+        coarse: values(channels, 0.02),
+    });
+    model.experts = Some(ExpertModel {
+        rank: RANK,
+        input: values(CLUSTERS * RANK * reads, 0.1),
+        bias: values(CLUSTERS * RANK, 0.1),
+        output: values(channels * RANK, 0.02),
+    });
+    common::packed(&trained).bytes().to_vec()
+}
 
 fn int8() -> Vec<u8> {
     to_int8(&PackFile::from_bytes(&engines::mechanics()), &Provenance::default()).unwrap()
@@ -99,6 +128,8 @@ fn golden_packs_load_and_step() {
         if std::env::var("KINESIC_GOLDEN").as_deref() == Ok("write") && !path.exists() {
             std::fs::write(&path, common::pack(form, order).bytes()).unwrap();
         }
+    }
+    for name in GOLDEN.map(|(name, ..)| name).into_iter().chain(["translator-several.kin"]) {
         let file = golden(name);
         let pack = file.pack().unwrap();
         let device = Device::load(&pack).unwrap();

@@ -10,7 +10,7 @@ const LEAP: f32 = 0.5;
 
 /// How far a body has been carried from where the source stands: engines change travel, and this is its sum, world, m.
 ///
-/// It keeps within the frame's [`reach`](Frame::reach), 2 m by default. What carries the body farther out counts in full up to half the reach,
+/// It keeps within the frame's [`reach`](Frame::reach), [`REACH`](super::REACH) by default. What carries the body farther out counts in full up to half the reach,
 /// then ever less, and nothing at the reach; what brings it back counts in full. So no sequence of frames takes it beyond, and where nothing
 /// travels nothing moves. With limits their target keeps the reach, and the body is behind it by as much as they hold it back: a leap
 /// of the source is bridged. An engine that looks at no source, an [`Emotion`](crate::Emotion), goes its own way.

@@ -200,8 +200,8 @@ impl Stage<'_> {
         let fps = f64::from(pack.metadata().frame_rate);
         let source = path.map(|path| Source::read(path, options)).transpose().into_diagnostic()?;
         let clip = source.as_ref().map(|source| source.on_rig(rig, fps)).transpose().into_diagnostic()?;
-        let played = play(args, pack, rig, clip.as_ref(), &self.knobs)?;
         let place = Place::choose(args.on, args.feet, pack, source.as_ref())?;
+        let played = play(args, pack, rig, clip.as_ref(), &self.knobs, !place.is_own())?;
         let mut landed =
             place.land(source.as_ref(), (pack, rig), clip.as_ref(), &played.clip, self.hold).into_diagnostic()?;
         landed.clip = played.on_clock(&landed.clip, clip.as_ref().unwrap_or(&played.clip));
@@ -298,8 +298,8 @@ fn check_length(args: &Args, pack: &Pack, clip: &Clip) -> miette::Result<()> {
     })
 }
 
-/// Plays with the engine that the pack holds.
-fn play(args: &Args, pack: &Pack, rig: &Rig, clip: Option<&Clip>, knobs: &Knobs) -> miette::Result<Played> {
+/// Plays with the engine that the pack holds; `live` as a device does, which does not know the clip before it begins.
+fn play(args: &Args, pack: &Pack, rig: &Rig, clip: Option<&Clip>, knobs: &Knobs, live: bool) -> miette::Result<Played> {
     let (controls, curve) = (knobs.controls, || knobs.curve.clone());
     let models: Vec<ModelMeta> = pack.metadata().models.iter().collect();
     let learned = matches!(args.timing, Clock::Learned);
@@ -310,7 +310,7 @@ fn play(args: &Args, pack: &Pack, rig: &Rig, clip: Option<&Clip>, knobs: &Knobs)
                 check_length(args, pack, clip)?;
             }
             let fade = args.unfamiliar == Unfamiliar::Fade;
-            let settings = translate::Settings { controls, curve: curve(), timing, fade };
+            let settings = translate::Settings { controls, curve: curve(), timing, fade, live };
             let played = translate::play_on_clock(pack, rig, clip, &settings).into_diagnostic()?;
             let unfamiliar = played.unfamiliar_percent();
             let clock = learned.then_some(played.clock);

@@ -9,7 +9,6 @@ use super::candidate::Candidate;
 use super::dataset::Sequence;
 use super::dynamics::Dynamics;
 use super::features::centred;
-use super::fit::Problem;
 use super::gate::{GateModel, Sight};
 use super::model::ExpertModel;
 use super::moments::Map;
@@ -78,11 +77,4 @@ pub fn split(map: Map, dynamics: &Dynamics, clusters: usize, frames: &[Mat<f64>]
     let output = (0..channels).flat_map(|c| (0..RANK).map(move |k| (c, k))).map(|at| directions[at]).collect();
     let weights = map.weights.subrows(0, shared).to_owned();
     Some((Map { weights, ..map }, ExpertModel { rank: RANK, input, bias, output }))
-}
-
-impl Problem<'_> {
-    /// Whether the training is of several actions, and what tells them apart.
-    pub fn actions(&self) -> Option<GateModel> {
-        self.gate().filter(|gate| gate.several_actions(self.sequences(), self.mean()))
-    }
 }

@@ -252,16 +252,16 @@ impl<'a> Problem<'a> {
     }
 
     /// What a candidate makes of each sequence when it has not seen the fold it speaks of: coordinates, `[frames x 3 rows]`,
-    /// rad or m. Frames without a partner are left to the model of all folds.
-    pub fn held_out(&self, candidate: &Candidate) -> Option<Vec<Vec<f64>>> {
+    /// rad or m. Frames without a partner are left to the model of all folds. Experts need the `gate`.
+    pub fn held_out(&self, candidate: &Candidate, gate: Option<&GateModel>) -> Option<Vec<Vec<f64>>> {
         let mut predicted: Vec<Vec<f64>> = self.sequences.iter().map(|s| vec![0.0; s.input.len()]).collect();
         match candidate.coordinates {
             Some(coordinates) => {
                 let (dynamics, mut features) = self.whole_body(coordinates, candidate.poles);
                 let mut penalties = candidate.penalties(dynamics.states(), dynamics.inputs);
                 if candidate.experts {
-                    let gate = self.gate()?;
-                    features = self.expert_features(&gate, &features);
+                    let gate = gate?;
+                    features = self.expert_features(gate, &features);
                     penalties = experts::penalties(candidate, gate.clusters(), dynamics.states(), dynamics.inputs);
                 }
                 self.predict_held_out(candidate.base, &penalties, &features, 0..self.channels, &mut predicted)?;
@@ -317,8 +317,8 @@ impl<'a> Problem<'a> {
         Some(())
     }
 
-    /// The model of a candidate, fitted on all frames; `None` if the data leave it undetermined.
-    pub fn fit(&self, candidate: &Candidate, style: &str) -> Option<TranslatorModel> {
+    /// The model of a candidate with a gate or without one, fitted on all frames; `None` if the data leave it undetermined.
+    pub fn fit(&self, candidate: &Candidate, style: &str, gate: Option<GateModel>) -> Option<TranslatorModel> {
         let mut model = TranslatorModel {
             style: style.to_owned(),
             frame_rate: self.fps,
@@ -329,7 +329,7 @@ impl<'a> Problem<'a> {
             bank: BankModel::PerJoint(Vec::new()),
             timing: TimingModel { input: vec![0.0; self.channels], ..TimingModel::default() },
             strength: [0.0, 1.0],
-            gate: self.gate(),
+            gate,
             experts: None,
         };
         match candidate.coordinates {

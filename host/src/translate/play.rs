@@ -38,11 +38,13 @@ pub struct Settings {
     pub timing: Timing,
     /// Whether the style fades where the motion is unlike the training.
     pub fade: bool,
+    /// Whether the clip begins as a live stream does, as if the body had stood before. Else it did before what it does at its beginning.
+    pub live: bool,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { controls: Controls::default(), curve: None, timing: Timing::default(), fade: true }
+        Self { controls: Controls::default(), curve: None, timing: Timing::default(), fade: true, live: false }
     }
 }
 
@@ -79,10 +81,7 @@ pub fn play(pack: &Pack, rig: &Rig, source: &Clip, settings: &Settings) -> Resul
 const BEGINNING: f64 = 2.0;
 
 /// The frames of a clip's beginning, the last of them first.
-fn beginning(rig: &Rig, source: &Clip, translator: &HostTranslator) -> Vec<HostFrame> {
-    if !translator.is_gated() {
-        return Vec::new();
-    }
+fn beginning(rig: &Rig, source: &Clip) -> Vec<HostFrame> {
     let frames = source.frames().min((BEGINNING / source.frame_time) as usize);
     let mut frames = rig.read(&rig.poses(&source.slice(0..frames)));
     frames.reverse();
@@ -100,12 +99,12 @@ pub fn play_on_clock(pack: &Pack, rig: &Rig, source: &Clip, settings: &Settings)
     let mut clock = Vec::with_capacity(source.frames());
     let mut now = 0.0;
     let knobs = Knobs { controls: settings.controls, curve: settings.curve.clone() };
-    let before = beginning(rig, source, &translator);
+    let knows = translator.is_gated() && !settings.live;
+    let before = if knows { beginning(rig, source) } else { Vec::new() };
     let styled = rig.play(source, |frame| {
         state.controls.strength = knobs.strength(clock.len(), source.frame_time);
         if clock.is_empty() {
             translator.start(&mut state, frame);
-            // What the clip does at its beginning it did before.
             before.iter().for_each(|frame| translator.watch(&mut state, frame));
         }
         let timing = translator.step(&mut state, frame);

@@ -11,6 +11,7 @@ use super::cyclic::walks;
 use super::dataset::{Correspondence, Mirror, Sequence};
 use super::dynamics::Poles;
 use super::fit::Problem;
+use super::gate::GateModel;
 use super::model::TranslatorModel;
 use super::moments::Base;
 use super::simulate::simulate;
@@ -214,14 +215,14 @@ pub fn train_kept(
     let ends = alignment.ends();
     let mut forms = Vec::new();
     for candidate in per_joint.into_iter().chain(whole_body) {
-        let error = || held_out_error(rig, &problem, &candidate, pairs, ends);
+        let error = || held_out_error(rig, &problem, &candidate, None, pairs, ends);
         forms.push((candidate, 100.0 * cache.number(&format!("form {candidate:?}"), error)?));
     }
     // The plain affine map, on the plain time warp, must be beaten clearly to be replaced.
     let plain = if alignment.ends() == OPEN { sequences.clone() } else { plain_sequences(rig, pairs)? };
     let plain = Problem::new(rig, &plain, &[], fps);
     if options.form == FormChoice::Auto {
-        let error = || held_out_error(rig, &plain, &AFFINE, pairs, ends);
+        let error = || held_out_error(rig, &plain, &AFFINE, None, pairs, ends);
         forms.push((AFFINE, 100.0 * cache.number("affine", error)?));
     }
     let handicap = |candidate: &Candidate| if candidate.coordinates.is_some() { PER_JOINT } else { 1.0 };
@@ -229,18 +230,20 @@ pub fn train_kept(
     let best = *forms.iter().min_by(|a, b| judged(a).total_cmp(&judged(b))).ok_or(TrainError::Undetermined)?;
     let simple = forms.iter().find(|(candidate, error)| *candidate == AFFINE && best.1 > (1.0 - MARGIN) * error);
     let mut candidate = *simple.unwrap_or(&best);
-    if options.gate
-        && options.form != FormChoice::PerJoint
-        && let Some(found) = several(&problem, &candidate.0, options, cache)
-    {
-        candidate = (found, 100.0 * held_out_error(rig, &problem, &found, pairs, ends)?);
+    let gate = options.gate.then(|| problem.gate()).flatten();
+    let experts = gate.as_ref().filter(|_| options.form != FormChoice::PerJoint);
+    if let Some(found) = experts.and_then(|gate| several(&problem, gate, &candidate.0, options, cache)) {
+        candidate = (found, 100.0 * held_out_error(rig, &problem, &found, gate.as_ref(), pairs, ends)?);
         forms.push(candidate);
     }
 
     progress(Stage::Fit);
-    let problem = if candidate.0 == AFFINE { plain } else { problem };
-    let mut model = problem.fit(&candidate.0, style).ok_or(TrainError::Undetermined)?;
-    model.gate = model.gate.filter(|_| options.gate);
+    let (problem, gate) = match candidate.0 == AFFINE {
+        // On another time warp, another mean change.
+        true => (&plain, gate.and_then(|_| plain.gate())),
+        false => (&problem, gate),
+    };
+    let model = problem.fit(&candidate.0, style, gate).ok_or(TrainError::Undetermined)?;
     Ok(Trained {
         model,
         baselines: baselines(pairs)?,
@@ -266,9 +269,17 @@ fn ways(rig: &Rig, pairs: &[TrainPair]) -> Vec<Alignment> {
 }
 
 /// The best candidate with experts, where the pairs are of several actions and it is clearly better than `plain` on takes that it has not seen.
-fn several(problem: &Problem, plain: &Candidate, options: &TrainOptions, cache: &StepCache) -> Option<Candidate> {
+fn several(
+    problem: &Problem,
+    gate: &GateModel,
+    plain: &Candidate,
+    options: &TrainOptions,
+    cache: &StepCache,
+) -> Option<Candidate> {
+    if !gate.several_actions(problem.sequences(), problem.mean()) {
+        return None;
+    }
     let problem = problem.clone().by_take();
-    let gate = problem.actions()?;
     let limit = options.order.unwrap_or(WHOLE_BODY_ORDER);
     let mut grid = Vec::new();
     for (coordinates, poles) in [(8, Poles::Relaxation), (12, Poles::Relaxation), (12, Poles::Harmonics2)] {
@@ -283,7 +294,7 @@ fn several(problem: &Problem, plain: &Candidate, options: &TrainOptions, cache: 
         }));
     }
     let plain = problem.validate(&[*plain], cache, "by take")[0];
-    let errors = cache.always("experts", || problem.validate_experts(&grid, &gate));
+    let errors = cache.always("experts", || problem.validate_experts(&grid, gate));
     let best = grid.iter().zip(errors).min_by(|a, b| a.1.total_cmp(&b.1))?;
     (best.1 < SEVERAL * plain).then_some(*best.0)
 }
@@ -293,10 +304,11 @@ fn held_out_error(
     rig: &Rig,
     problem: &Problem,
     candidate: &Candidate,
+    gate: Option<&GateModel>,
     pairs: &[TrainPair],
     ends: Ends,
 ) -> Result<f64, TrainError> {
-    let predicted = problem.held_out(candidate).ok_or(TrainError::Undetermined)?;
+    let predicted = problem.held_out(candidate, gate).ok_or(TrainError::Undetermined)?;
     let mut error = 0.0;
     for (pair, predicted) in pairs.iter().zip(&predicted) {
         let series = |values| Series::new(values, pair.source.channels());
@@ -342,7 +354,7 @@ fn aligned(
     };
     let mut current = sequences(&|_, pair| correspond(way, &pair.source, &pair.target, rig, partners, fps))?;
     let quick = |sequences: &[Sequence]| {
-        let model = Problem::new(rig, sequences, &[], fps).fit(&QUICK, "").ok_or(TrainError::Undetermined)?;
+        let model = Problem::new(rig, sequences, &[], fps).fit(&QUICK, "", None).ok_or(TrainError::Undetermined)?;
         Ok::<_, TrainError>(pairs.iter().map(|pair| rig.positions(&simulate(&model, &pair.source))).collect::<Vec<_>>())
     };
     // Evenly performed motions of a machine are on one clock: a warp would only hide how fast its servos react.
@@ -355,7 +367,7 @@ fn aligned(
         current = sequences(&again)?;
     }
     let judge = if rig.frames().travels() { JUDGE } else { MACHINE_JUDGE };
-    Ok((held_out_error(rig, &Problem::new(rig, &current, &[], fps), &judge, pairs, ends)?, current))
+    Ok((held_out_error(rig, &Problem::new(rig, &current, &[], fps), &judge, None, pairs, ends)?, current))
 }
 
 impl TrainPair {

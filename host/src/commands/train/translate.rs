@@ -290,6 +290,12 @@ fn notes(trained: &Trained) -> Vec<String> {
         format!("mirrored copies: {}", if trained.mirrored { "yes" } else { "no" }),
         format!("main frequency: {:.2} Hz", trained.main_frequency),
     ];
+    if trained.candidate.0.experts {
+        notes.push(
+            "several actions: an expert for each was chosen on takes of them that were held back, and its error above is of actions left out"
+                .to_owned(),
+        );
+    }
     if trained.alignment == Alignment::Opposite {
         notes.push(
             "the clips start on opposite feet and left answers right: for masks, or strengths below 1, train with \
