@@ -4,6 +4,7 @@ mod real;
 
 use kinesic::engine::Controls;
 use kinesic_host::clip::{Clip, ReadOptions};
+use kinesic_host::feet::{Hold, lock};
 use kinesic_host::gait::{self, Manner, walk};
 use kinesic_host::pack::{PackFile, Provenance};
 use kinesic_host::prepare::Source;
@@ -164,5 +165,13 @@ fn walks_leave_real_boxing_waving_and_walking_backwards_alone() {
         {
             assert!(percent(&clip) > 60.0, "{style}: {}", percent(&clip));
         }
+        // The boxer takes steps that look familiar, one at a time: none of them carries him away, and neither do feet that are held.
+        let boxer = on_rig("m21/content/box-1.bvh");
+        let out = played(&file, &rig, &boxer, &Settings::default());
+        let held =
+            lock(&boxer, &out.clip, &rig.map, Hold { familiar: out.familiar.as_ref().unwrap(), ..Hold::default() });
+        let travel = |clip: &Clip| (clip.root[clip.frames() - 1] - clip.root[0]).xz().norm();
+        let [from, free, held] = [&boxer, &out.clip, &held].map(travel);
+        assert!((free - from).abs() < 0.05 && (held - from).abs() < 0.1, "{style}: {from} {free} {held}");
     }
 }

@@ -45,6 +45,7 @@ impl<'a> Tiled<'a> {
     }
 
     /// `y += W x`. Cost: `rows` (rounded up to 8) x `columns` multiply-adds.
+    #[inline(never)]
     pub fn multiply_add(&self, x: &[f32], y: &mut [f32]) {
         for (sums, y) in self.sums(x).zip(y.chunks_mut(ROWS)) {
             for (y, sum) in y.iter_mut().zip(sums) {

@@ -67,6 +67,8 @@ pub enum LoadError {
     },
     /// The limits of a pack hold jerk limits, which a [`Limiter`](crate::Limiter) does not keep: a [`SmoothLimiter`](crate::SmoothLimiter) does.
     Jerk,
+    /// The translator knows how familiar a frame is, and is loaded into a type for those that do not: see [`Ungated`](super::Ungated).
+    Gated,
     /// The file has no such model.
     NoModel {
         /// Name of the engine that was asked for.
@@ -141,6 +143,9 @@ impl fmt::Display for LoadError {
             Self::Range { field } => write!(f, "the metadata is out of range: {field}"),
             Self::Bounds { tensor } => write!(f, "tensor {tensor} is misaligned or reaches past the end of the file"),
             Self::Jerk => f.write_str("the pack has jerk limits: load it as a SmoothLimiter"),
+            Self::Gated => f.write_str(
+                "the translator has a gate: load it as a type that is not Ungated, or train it with --no-gate",
+            ),
             Self::NoModel { expected } => write!(f, "the pack holds no {expected}"),
             Self::NoTensor { tensor } => write!(f, "tensor {tensor} is missing"),
             Self::Shape { tensor, found, expected } => {

@@ -12,7 +12,7 @@ mod tensor;
 
 pub use error::LoadError;
 pub use meta::*;
-pub use numbers::{AnyNumbers, Floats, Integers, Numbers};
+pub use numbers::{AnyNumbers, Floats, Integers, Numbers, Ungated};
 pub use tensor::Element;
 use tensor::payload_in_bounds;
 

@@ -54,6 +54,7 @@ impl<'a> Experts<'a> {
     }
 
     /// `y += P sum w (M [x; p] + b)` over the two experts that are near.
+    #[inline(never)]
     pub fn add(&self, sight: &Sight, filters: &[f32], output: &mut [[f32; 3]]) {
         let mut sum = [0.0; RANK];
         let filters = filters.get(..self.reads).unwrap_or_default();

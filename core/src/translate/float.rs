@@ -4,7 +4,7 @@ use super::bank::Bank;
 use super::experts::Experts;
 use super::gate::{Gate, Sight};
 use crate::kernel;
-use crate::model::{Form, LoadError, Pack, TranslatorMeta};
+use crate::model::{Form, LoadError, Numbers, Pack, TranslatorMeta};
 
 /// From the normalised input to styled coordinates and the clock.
 #[derive(Clone, Copy, Debug)]
@@ -29,7 +29,12 @@ struct TimingHead<'a> {
 }
 
 impl<'a> Float<'a> {
-    pub fn load(pack: &Pack<'a>, meta: &TranslatorMeta, gate: Option<&Gate>, rows: usize) -> Result<Self, LoadError> {
+    pub fn load<N: Numbers>(
+        pack: &Pack<'a>,
+        meta: &TranslatorMeta,
+        gate: Option<&Gate>,
+        rows: usize,
+    ) -> Result<Self, LoadError> {
         let bank = Bank::load(pack, meta, rows)?;
         let timing_states = match meta.form {
             Form::WholeBody => 2 * meta.blocks as usize + meta.drives as usize,
@@ -46,7 +51,7 @@ impl<'a> Float<'a> {
                 states: pack.slice("translate/timing_states", timing_states)?,
             },
             bank,
-            experts: Experts::load(pack, meta, gate, rows)?,
+            experts: if N::GATED { Experts::load(pack, meta, gate, rows)? } else { None },
         })
     }
 
@@ -65,12 +70,18 @@ impl<'a> Float<'a> {
     }
 
     /// One frame: `output` in rad or m; log2 of the duration.
-    pub fn step(&self, input: &[[f32; 3]], sight: &Sight, filters: &mut [f32], output: &mut [[f32; 3]]) -> f32 {
+    pub fn step<N: Numbers>(
+        &self,
+        input: &[[f32; 3]],
+        sight: &Sight,
+        filters: &mut [f32],
+        output: &mut [[f32; 3]],
+    ) -> f32 {
         self.apply_direct(input, output);
         // Timing reads the states that the output reads, before they move on.
         self.bank.project(input, filters);
         let log2 = self.timing.evaluate(input.as_flattened(), filters);
-        if let Some(experts) = &self.experts {
+        if let (Some(experts), true) = (&self.experts, N::GATED) {
             experts.add(sight, filters, output);
         }
         self.bank.advance(input, filters, output);

@@ -7,14 +7,20 @@
 use crate::kernel::{ROWS as TILE, Tiled};
 use crate::model::{LoadError, Pack};
 
+/// The tensor that only a pack with a gate has: a factor for each feature.
+pub(super) const PRESENT: &str = "translate/gate_speed";
 /// Most features: one tile of the projection.
 const FEATURES: usize = TILE;
-/// Words before those of the features: started or not, and novelty.
-const HEAD: usize = 2;
+/// Words before those of the features: started or not, novelty, and how familiar the last second was.
+const HEAD: usize = 3;
 /// Words of a feature: its last value, and what is smoothed of it and of its speed.
 const MEMORY: usize = 3;
 /// Novelties beyond are this one.
 const LARGEST: f32 = 1e6;
+/// Rate at which the last second is remembered, in rates of novelty.
+const SECOND: f32 = 0.1;
+/// How familiar the last second must be for any of the style's travel, and 1 / how much more for all of it.
+const TRAVEL: [f32; 2] = [0.5, 1.0 / 0.4];
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Gate<'a> {
@@ -35,20 +41,17 @@ pub(super) struct Gate<'a> {
 pub(super) struct Sight {
     /// Part of the style that counts, 0 to 1.
     pub familiar: f32,
+    /// Part of that which counts for travel: one step that looks familiar carries nobody away.
+    pub travel: f32,
     /// The two nearest clusters and their weights, which add up to 1.
     pub near: [(usize, f32); 2],
 }
 
 impl<'a> Gate<'a> {
-    /// `None` for a pack without a gate.
-    pub fn load(pack: &Pack<'a>, rows: usize) -> Result<Option<Self>, LoadError> {
-        let tensor = "translate/gate_speed";
-        let features = match pack.rows(tensor) {
-            Err(LoadError::NoTensor { .. }) => return Ok(None),
-            found => found?,
-        };
+    /// The gate of a pack in which [`PRESENT`] has so many `features`.
+    pub fn load(pack: &Pack<'a>, features: usize, rows: usize) -> Result<Self, LoadError> {
         if features == 0 || features > FEATURES {
-            return Err(LoadError::Shape { tensor, found: features, expected: FEATURES });
+            return Err(LoadError::Shape { tensor: PRESENT, found: features, expected: FEATURES });
         }
         let tensor = "translate/gate_centres";
         let numbers = pack.rows(tensor)?;
@@ -66,13 +69,13 @@ impl<'a> Gate<'a> {
         if let Some(index) = wild.or((inverse < 0.0).then_some(3)) {
             return Err(LoadError::Value { tensor: "translate/gate_rates", index });
         }
-        Ok(Some(Self {
+        Ok(Self {
             project: Tiled::load(pack, "translate/gate_project", features, 3 * rows)?,
-            speed: pack.slice("translate/gate_speed", features)?,
+            speed: pack.slice(PRESENT, features)?,
             centres: pack.slice(tensor, count * features)?,
             rates,
             coarse: pack.slice("translate/gate_coarse", rows)?,
-        }))
+        })
     }
 
     /// Clusters.
@@ -91,10 +94,11 @@ impl<'a> Gate<'a> {
     }
 
     /// Looks at a frame. `memory` has [`words`](Self::words) words; all zero, it begins with this frame, as if it had been held.
+    #[inline(never)]
     pub fn look(&self, input: &[[f32; 3]], memory: &mut [f32]) -> Sight {
         let mut features = [0.0; FEATURES];
         self.project.multiply_add(input.as_flattened(), &mut features);
-        let Some(([started, novelty], memory)) = memory.split_first_chunk_mut::<HEAD>() else {
+        let Some(([started, novelty, second], memory)) = memory.split_first_chunk_mut::<HEAD>() else {
             return Sight::EVERYTHING;
         };
         let own = memory.as_chunks_mut::<MEMORY>().0;
@@ -119,7 +123,11 @@ impl<'a> Gate<'a> {
         let [of_first, of_second] = [(c - a) * (c - a), (c - b) * (c - b)];
         let sum = of_first + of_second;
         let part = if sum > 0.0 && sum.is_finite() { of_first / sum } else { 0.5 };
-        Sight { familiar: 1.0 / (1.0 + fourth * fourth), near: [(first_near, part), (second_near, 1.0 - part)] }
+        let familiar = 1.0 / (1.0 + fourth * fourth);
+        *second = if first { familiar } else { *second + SECOND * novelty_rate * (familiar - *second) };
+        let [least, steep] = TRAVEL;
+        let travel = ((*second - least) * steep).clamp(0.0, 1.0);
+        Sight { familiar, travel, near: [(first_near, part), (second_near, 1.0 - part)] }
     }
 
     /// Squared distances and numbers of the three nearest clusters, the nearest first.
@@ -146,8 +154,12 @@ impl<'a> Gate<'a> {
     }
 
     /// What counts of the style, and of the change that suits any motion: `output` is what the style makes of `rows`.
-    pub fn fade(&self, familiar: f32, rows: &[[f32; 3]], output: &mut [[f32; 3]]) {
+    pub fn fade(&self, sight: &Sight, rows: &[[f32; 3]], output: &mut [[f32; 3]]) {
+        let Sight { familiar, travel, .. } = *sight;
         let strange = 1.0 - familiar;
+        if let (Some([x, _, z]), Some([from_x, _, from_z])) = (output.first_mut(), rows.first()) {
+            (*x, *z) = (from_x + travel * (*x - from_x), from_z + travel * (*z - from_z));
+        }
         for ((y, x), coarse) in output.iter_mut().zip(rows).zip(self.coarse) {
             for ((y, x), coarse) in y.iter_mut().zip(x).zip(coarse) {
                 *y = x + (familiar * (*y - x) + strange * coarse);
@@ -158,5 +170,5 @@ impl<'a> Gate<'a> {
 
 impl Sight {
     /// Everything is familiar.
-    pub const EVERYTHING: Self = Self { familiar: 1.0, near: [(0, 1.0), (0, 0.0)] };
+    pub const EVERYTHING: Self = Self { familiar: 1.0, travel: 1.0, near: [(0, 1.0), (0, 0.0)] };
 }

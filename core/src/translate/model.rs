@@ -2,7 +2,7 @@
 
 use super::fixed::Fixed;
 use super::float::Float;
-use super::gate::Gate;
+use super::gate::{self, Gate};
 use core::marker::PhantomData;
 
 use crate::model::{AnyNumbers, LoadError, ModelMeta, Numbers, Pack, TensorType, TranslatorMeta};
@@ -48,10 +48,14 @@ impl<'a, const ROWS: usize, const STATES: usize, N: Numbers> Translator<'a, ROWS
             .ok_or(LoadError::NoModel { expected: "translator" })?;
         let rows = Rig::load(pack)?.rows();
         fits("ROWS", rows, ROWS)?;
-        let gate = Gate::load(pack, rows)?;
+        let gate = match pack.rows(gate::PRESENT) {
+            Ok(_) if !N::GATED => return Err(LoadError::Gated),
+            Ok(features) if N::GATED => Some(Gate::load(pack, features, rows)?),
+            _ => None,
+        };
         fits("STATES", filters(&meta).saturating_add(gate.as_ref().map_or(0, Gate::words)), STATES)?;
         let linear = match pack.number("translate/direct")? {
-            TensorType::F32 if N::FLOAT => Linear::Float(Float::load(pack, &meta, gate.as_ref(), rows)?),
+            TensorType::F32 if N::FLOAT => Linear::Float(Float::load::<N>(pack, &meta, gate.as_ref(), rows)?),
             TensorType::I16 if N::INTEGER => Linear::Fixed(Fixed::load(pack, &meta, rows)?),
             found => return Err(LoadError::NumberType { tensor: "translate/direct", found }),
         };

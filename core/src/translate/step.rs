@@ -28,7 +28,7 @@ impl<const ROWS: usize, const STATES: usize, N: Numbers> Translator<'_, ROWS, ST
     /// Lets the gate see a frame that is not translated: how a clip moves before its first frame, say. After [`start`](Self::start), by which the
     /// body has stood still for ever. A frame that is not sound, or a model without a gate, changes nothing.
     pub fn watch(&self, state: &mut TranslatorState<ROWS, STATES>, frame: &Frame<ROWS>) {
-        if let (Some(gate), true) = (&self.gate, frame.is_sound()) {
+        if let (Some(gate), true) = (&self.gate, N::GATED && frame.is_sound()) {
             let input = self.normalised(&frame.rows);
             let words = state.parts::<f32>(filters(&self.meta)).1;
             let sight = gate.look(input.get(..self.rows).unwrap_or_default(), words);
@@ -51,18 +51,20 @@ impl<const ROWS: usize, const STATES: usize, N: Numbers> Translator<'_, ROWS, ST
         let mut output = [[0.0; 3]; ROWS];
         let count = filters(&self.meta);
         let sight = match &self.gate {
-            Some(gate) => gate.look(input.get(..self.rows).unwrap_or_default(), state.parts::<f32>(count).1),
-            None => Sight::EVERYTHING,
+            Some(gate) if N::GATED => {
+                gate.look(input.get(..self.rows).unwrap_or_default(), state.parts::<f32>(count).1)
+            }
+            _ => Sight::EVERYTHING,
         };
         let mut log2 = match &self.linear {
             // Guards are constant: code of number types that N leaves out is not linked.
-            Linear::Float(linear) if N::FLOAT => linear.step(&input, &sight, state.parts(count).0, &mut output),
+            Linear::Float(linear) if N::FLOAT => linear.step::<N>(&input, &sight, state.parts(count).0, &mut output),
             Linear::Fixed(linear) if N::INTEGER => linear.step(&input, state.parts(count).0, &mut output),
             _ => 0.0,
         };
         state.familiar = sight.familiar;
-        if let (Some(gate), true) = (&self.gate, state.fade) {
-            gate.fade(sight.familiar, &frame.rows, &mut output);
+        if let (Some(gate), true) = (&self.gate, N::GATED && state.fade) {
+            gate.fade(&sight, &frame.rows, &mut output);
             log2 *= sight.familiar;
         }
         if state.controls.apply(&mut output, frame, self.rows) {

@@ -1,6 +1,6 @@
 //! What the firmware of a servo machine does in a frame: angles in; style, limits, and what every servo is told out.
 
-use kinesic::model::Floats;
+use kinesic::model::{Floats, Ungated};
 use kinesic::{LimitState, Limiter, Pack, Pipeline, PipelineState, Servos, Translator, TranslatorState};
 
 use crate::{Digest, Refused, Workload};
@@ -26,7 +26,8 @@ pub struct Running<const SERVOS: usize, const ROWS: usize, const STATES: usize> 
 
 /// An input frame is an angle per servo, rad.
 impl<const SERVOS: usize, const ROWS: usize, const STATES: usize> Workload for Machine<SERVOS, ROWS, STATES> {
-    type Model<'p> = (Pipeline<'p, (Translator<'p, ROWS, STATES, Floats>, Limiter<'p, ROWS>), ROWS>, Servos<'p>);
+    type Model<'p> =
+        (Pipeline<'p, (Translator<'p, ROWS, STATES, Ungated<Floats>>, Limiter<'p, ROWS>), ROWS>, Servos<'p>);
     type State = Running<SERVOS, ROWS, STATES>;
 
     fn open(pack: &[u8]) -> Result<Self::Model<'_>, Refused> {

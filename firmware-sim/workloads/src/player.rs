@@ -1,6 +1,6 @@
 //! What a desk robot's firmware does in a frame when it has a player: layers, style, limits of jerk too, and what every servo is told.
 
-use kinesic::model::Floats;
+use kinesic::model::{Floats, Ungated};
 use kinesic::play::Move;
 use kinesic::{Pack, Pipeline, PipelineState, Player, Servos, SmoothLimitState, SmoothLimiter};
 use kinesic::{Translator, TranslatorState};
@@ -42,7 +42,8 @@ pub struct Running {
 
 /// An input frame is an angle per servo, rad.
 impl Workload for Layers {
-    type Model<'p> = (Pipeline<'p, (Translator<'p, ROWS, STATES, Floats>, SmoothLimiter<'p, ROWS>), ROWS>, Servos<'p>);
+    type Model<'p> =
+        (Pipeline<'p, (Translator<'p, ROWS, STATES, Ungated<Floats>>, SmoothLimiter<'p, ROWS>), ROWS>, Servos<'p>);
     type State = Running;
 
     fn open(pack: &[u8]) -> Result<Self::Model<'_>, Refused> {

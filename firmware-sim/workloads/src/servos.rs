@@ -2,7 +2,7 @@
 
 use core::marker::PhantomData;
 
-use kinesic::model::{Floats, Integers, Numbers};
+use kinesic::model::{Floats, Integers, Numbers, Ungated};
 use kinesic::{LimitState, Limiter, Pack, Pipeline, PipelineState, Translator, TranslatorState};
 
 use crate::{Digest, Refused, Workload};
@@ -33,7 +33,7 @@ pub struct Running {
 
 /// An input frame is an angle per servo, rad.
 impl<N: Numbers> Workload for Servos<N> {
-    type Model<'p> = Pipeline<'p, (Translator<'p, ROWS, STATES, N>, Limiter<'p, ROWS>), ROWS>;
+    type Model<'p> = Pipeline<'p, (Translator<'p, ROWS, STATES, Ungated<N>>, Limiter<'p, ROWS>), ROWS>;
     type State = Running;
 
     fn open(pack: &[u8]) -> Result<Self::Model<'_>, Refused> {

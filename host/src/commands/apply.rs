@@ -146,7 +146,7 @@ struct Stage<'p> {
     machine: Option<Machine>,
     options: ReadOptions,
     knobs: Knobs,
-    hold: Hold,
+    hold: Hold<'static>,
 }
 
 /// Greatest strength, whatever its sign.
@@ -202,8 +202,10 @@ impl Stage<'_> {
         let clip = source.as_ref().map(|source| source.on_rig(rig, fps)).transpose().into_diagnostic()?;
         let place = Place::choose(args.on, args.feet, pack, source.as_ref())?;
         let played = play(args, pack, rig, clip.as_ref(), &self.knobs, !place.is_own())?;
+        let familiar = if args.unfamiliar == Unfamiliar::Fade { played.familiar.as_deref() } else { None };
+        let hold = Hold { familiar: familiar.unwrap_or_default(), ..self.hold };
         let mut landed =
-            place.land(source.as_ref(), (pack, rig), clip.as_ref(), &played.clip, self.hold).into_diagnostic()?;
+            place.land(source.as_ref(), (pack, rig), clip.as_ref(), &played.clip, hold).into_diagnostic()?;
         landed.clip = played.on_clock(&landed.clip, clip.as_ref().unwrap_or(&played.clip));
         let (styled, limits) = match limit::play(pack, rig, &landed.clip).into_diagnostic()? {
             Some((clip, clamps)) => (Cow::Owned(clip), Some(clamps)),
@@ -218,7 +220,7 @@ impl Stage<'_> {
             frames: styled.frames(),
             frame_rate: 1.0 / styled.frame_time,
             quality: landed.judge(&styled),
-            unfamiliar_percent: played.unfamiliar,
+            unfamiliar_percent: played.unfamiliar_percent(),
             limits,
             notes: self.notes(&played),
         })
@@ -232,7 +234,7 @@ impl Stage<'_> {
         if !strength.range().iter().all(|strength| (low..=high).contains(strength)) {
             notes.push(format!("strength {strength} is outside the plausible range of this pack, {low} to {high}"));
         }
-        if let Some(percent) = played.unfamiliar.filter(|percent| *percent >= UNFAMILIAR) {
+        if let Some(percent) = played.unfamiliar_percent().filter(|percent| *percent >= UNFAMILIAR) {
             let what = match self.args.unfamiliar {
                 Unfamiliar::Fade => "the style fades there (--unfamiliar keep keeps it)",
                 Unfamiliar::Keep => "and keeps all of the style",
@@ -268,15 +270,20 @@ impl Summary {
 }
 
 /// What a pack made on its rig, frame for frame; when each frame is due, in frames, if the pack decides; the strengths that it calls
-/// plausible; and the percentage of frames that are unlike its training, if it knows.
+/// plausible; and how familiar each frame is, if it knows.
 struct Played {
     clip: Clip,
     clock: Option<Vec<f64>>,
     plausible: [f32; 2],
-    unfamiliar: Option<f64>,
+    familiar: Option<Vec<f32>>,
 }
 
 impl Played {
+    /// Percent of the frames that are unlike the training.
+    fn unfamiliar_percent(&self) -> Option<f64> {
+        self.familiar.as_deref().map(translate::unfamiliar_percent)
+    }
+
     /// A motion on the pack's clock, if that decides. `on_rig` has the frames that the clock counts.
     fn on_clock(&self, clip: &Clip, on_rig: &Clip) -> Clip {
         self.clock.as_ref().map_or_else(|| clip.clone(), |due| clip.on_clock(due, on_rig.frame_time))
@@ -312,16 +319,15 @@ fn play(args: &Args, pack: &Pack, rig: &Rig, clip: Option<&Clip>, knobs: &Knobs,
             let fade = args.unfamiliar == Unfamiliar::Fade;
             let settings = translate::Settings { controls, curve: curve(), timing, fade, live };
             let played = translate::play_on_clock(pack, rig, clip, &settings).into_diagnostic()?;
-            let unfamiliar = played.unfamiliar_percent();
             let clock = learned.then_some(played.clock);
-            return Ok(Played { clip: played.clip, clock, plausible: player.plausible, unfamiliar });
+            return Ok(Played { clip: played.clip, clock, plausible: player.plausible, familiar: played.familiar });
         }
         (Some((engine, _)), Some(_)) if learned => {
             return Err(miette!("--timing learned: the {engine} of this pack has no timing, only a translator has"));
         }
         (Some((_, player)), Some(clip)) => {
             let clip = (player.play)(pack, rig, clip, knobs).into_diagnostic()?;
-            return Ok(Played { clip, clock: None, plausible: player.plausible, unfamiliar: None });
+            return Ok(Played { clip, clock: None, plausible: player.plausible, familiar: None });
         }
         _ => {}
     }
@@ -334,7 +340,7 @@ fn play(args: &Args, pack: &Pack, rig: &Rig, clip: Option<&Clip>, knobs: &Knobs,
         if clip.frames() == 0 {
             return Err(miette!(help = "name a clip to play", "the pack stores no motion"));
         }
-        return Ok(Played { clip, clock: None, plausible: meta.strength, unfamiliar: None });
+        return Ok(Played { clip, clock: None, plausible: meta.strength, familiar: None });
     }
     let (found, help) = match args.stored {
         true => ("--stored: the pack holds no style components, which alone store a motion", "name a clip to play"),

@@ -95,7 +95,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let place = body.place(args.on, args.feet, &mechanics.source)?;
     let seconds =
         (mechanics.clip.duration() - args.mechanics_start).min(expressive.clip.duration() - args.expressive_start);
-    let hold = Hold { travels: mask::travels(&modulation.mask), soft: 0.0 };
+    let hold = Hold { travels: mask::travels(&modulation.mask), ..Hold::default() };
     let base = if place.is_own() { &mechanics.source.clip } else { &mechanics.clip };
     let fps = base.fps();
     let first = ((args.mechanics_start * fps).round() as usize).min(base.frames().saturating_sub(1));

@@ -79,7 +79,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     let modulation = body.modulation(args.amount, &args.mask)?;
     let motion = body.decouple(&args.clip, &args.reading)?;
     let place = body.place(args.on, args.feet, &motion.source)?;
-    let hold = Hold { travels: mask::travels(&modulation.mask), soft: 0.0 };
+    let hold = Hold { travels: mask::travels(&modulation.mask), ..Hold::default() };
     let source = Some(&motion.source);
     let own = body.own_rate(&motion.source)?;
     let pack = body.pack()?;

@@ -23,19 +23,26 @@ const STYLED: f64 = 0.01;
 const FLIGHT: f64 = 0.4;
 /// Part of its length to which a leg that stands is stretched at most.
 const STRETCH: f64 = 0.985;
+/// Standard deviation of the smoothing of what is familiar and of what is slow, s.
+const SECOND: f64 = 1.0;
+/// How familiar the motion must be for any of the style's travel, and for all of it: as on the device.
+const TRAVEL: [f64; 2] = [0.5, 0.9];
 
 /// How feet are held.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hold {
+pub struct Hold<'a> {
     /// Weight of the root, 0 to 1. At 0 it is left where the style has it, and feet stand on the very spots of the source.
     pub travels: f64,
     /// Standard deviation of the bell under which a foot is caught and let go, s: feet slip a little, and legs do not jerk.
     pub soft: f64,
+    /// How familiar the motion is to the style, 0 to 1, evenly over the clip; empty where that is not known. Where it is not familiar the body
+    /// goes where the source goes.
+    pub familiar: &'a [f32],
 }
 
-impl Default for Hold {
+impl Default for Hold<'_> {
     fn default() -> Self {
-        Self { travels: 1.0, soft: 0.0 }
+        Self { travels: 1.0, soft: 0.0, familiar: &[] }
     }
 }
 
@@ -45,7 +52,7 @@ impl Default for Hold {
 /// nothing else does. Then the root is lowered where a leg is too short. Last each leg is bent so that its foot is where it stood,
 /// blended in and out over .2 s. A foot in the air is kept over the ground. Where nothing was changed nothing changes.
 pub fn lock(source: &Clip, styled: &Clip, map: &JointMap, hold: Hold) -> Clip {
-    let Hold { travels, soft } = hold;
+    let Hold { travels, soft, familiar } = hold;
     let feet = Foot::of(&source.skeleton, map);
     let mut out = styled.clone();
     if feet.is_empty() || source.frames() < 2 {
@@ -58,6 +65,10 @@ pub fn lock(source: &Clip, styled: &Clip, map: &JointMap, hold: Hold) -> Clip {
     let to: Vec<Vec<Vector3<f64>>> = feet.iter().map(|foot| foot.path(styled)).collect();
     for (root, way) in out.root.iter_mut().zip(travel(&from, &to, &stands, fps)) {
         *root += travels * way;
+    }
+    let astray = unlearned(&source.root, &out.root, familiar, fps);
+    for (root, way) in out.root.iter_mut().zip(astray) {
+        *root -= travels * way;
     }
     let to: Vec<Vec<Vector3<f64>>> = feet.iter().map(|foot| foot.path(&out)).collect();
     let hold = |((foot, from), (to, stands)): ((&Foot, &Vec<_>), (&Vec<_>, &Vec<_>))| {
@@ -141,6 +152,27 @@ fn travel(from: &[Vec<Vector3<f64>>], to: &[Vec<Vector3<f64>>], stands: &[Vec<bo
         at
     });
     walked.collect()
+}
+
+/// How far the style has carried the root where it knows nothing, horizontally, m, per frame: the slow part of its drift there. The quick one
+/// is how the feet shift the weight.
+fn unlearned(source: &[Vector3<f64>], styled: &[Vector3<f64>], familiar: &[f32], fps: f64) -> Vec<Vector3<f64>> {
+    if familiar.is_empty() {
+        return vec![Vector3::zeros(); source.len()];
+    }
+    let last = (source.len() - 1).max(1);
+    let spread = |frame: usize| f64::from(familiar[frame * (familiar.len() - 1) / last]);
+    let familiar: Vec<_> = (0..source.len()).map(|frame| Vector3::repeat(spread(frame))).collect();
+    let familiar = smooth(&familiar, SECOND * fps);
+    let drift = |frame: usize| styled[frame] - source[frame];
+    let steps: Vec<_> = (0..source.len()).map(|frame| drift(frame) - drift(frame.saturating_sub(1))).collect();
+    let mut at = Vector3::zeros();
+    let carried = smooth(&steps, 0.5 * SECOND * fps).into_iter().zip(familiar).map(|(step, familiar)| {
+        at += (1.0 - ((familiar.x - TRAVEL[0]) / (TRAVEL[1] - TRAVEL[0])).clamp(0.0, 1.0))
+            * Vector3::new(step.x, 0.0, step.z);
+        at
+    });
+    carried.collect()
 }
 
 /// How far a foot must be moved to stand where it should, m, per frame. `also` says when the styled foot stands by itself, `strays` how much of
@@ -291,6 +323,22 @@ mod tests {
         // Shorter steps make less way, and what was carried on besides is gone.
         let way = |clip: &Clip| (clip.root[clip.frames() - 1] - clip.root[0]).xz().norm();
         assert!((0.6..0.9).contains(&(way(&out) / way(&clip))), "{} of {}", way(&out), way(&clip));
+    }
+
+    #[test]
+    fn where_the_style_knows_nothing_the_body_goes_where_the_source_goes() {
+        let clip = walk(&Manner::NEUTRAL, 4.0, 60.0, 0.0, 4);
+        let map = map(&clip);
+        let mut shorter = clip.clone();
+        let joints = clip.skeleton.len();
+        for (at, turn) in shorter.rotations.iter_mut().enumerate().filter(|(at, _)| [1, 5].contains(&(at % joints))) {
+            *turn = clip.rotations[at].powf(0.8);
+        }
+        let held = |familiar| lock(&clip, &shorter, &map, Hold { familiar, ..Hold::default() });
+        let [known, all, none] = [held(&[]), held(&[1.0]), held(&[0.0])];
+        assert!(known.root == all.root && known.rotations == all.rotations);
+        let far = |out: &Clip| out.root.iter().zip(&clip.root).map(|(a, b)| (a - b).xz().norm()).fold(0.0, f64::max);
+        assert!(far(&known) > 0.5 && far(&none) < 0.1, "{} {}", far(&known), far(&none));
     }
 
     #[test]

@@ -5,7 +5,7 @@ use kinesic::rig::JointKind;
 use kinesic::{Frame, Pack, Pose, Rig as DeviceRig};
 use nalgebra::{UnitQuaternion, Vector3, Vector4};
 
-use super::{MAX_JOINTS, Rig};
+use super::{MAX_JOINTS, Rig, Sides};
 use crate::pack::PackWriter;
 
 const UPRIGHT: [[f32; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -97,10 +97,12 @@ impl Coordinates {
 pub(super) fn centred(rig: &Rig, clips: &[&[Pose<MAX_JOINTS>]]) -> Vec<JointCoordinates> {
     let device = rig.frames();
     let (mut sums, mut first) = (vec![Vector4::<f64>::zeros(); rig.joints()], None);
+    // The poses in which clips begin.
+    let mut begins = Vec::new();
     let mut far = vec![0.0f64; rig.joints()];
     for clip in clips {
         let mut frame = Frame::<{ super::MAX_ROWS }>::new();
-        for pose in *clip {
+        for (at, pose) in clip.iter().enumerate() {
             device.read(pose, &mut frame);
             let mut rotations: Vec<UnitQuaternion<f64>> = pose.rotations[..rig.joints()]
                 .iter()
@@ -110,6 +112,9 @@ pub(super) fn centred(rig: &Rig, clips: &[&[Pose<MAX_JOINTS>]]) -> Vec<JointCoor
                 rotations[0] = frame.heading.rotation().cast().inverse() * rotations[0];
             }
             let first: &Vec<UnitQuaternion<f64>> = first.get_or_insert_with(|| rotations.clone());
+            if at == 0 {
+                begins.push(rotations.clone());
+            }
             for (((sum, far), q), start) in sums.iter_mut().zip(&mut far).zip(&rotations).zip(first) {
                 let sign = if q.coords.dot(&start.coords) < 0.0 { -1.0 } else { 1.0 };
                 *sum += q.coords * sign;
@@ -127,27 +132,26 @@ pub(super) fn centred(rig: &Rig, clips: &[&[Pose<MAX_JOINTS>]]) -> Vec<JointCoor
                 }
             })
             .collect();
-    let joints = 0..rig.joints();
+    // The mean of one arm's doing does not show which axes are alike; most clips begin with both arms down.
+    let sides = std::iter::once(&mean).chain(&begins).find_map(|straight| Sides::find(rig, straight));
     let joint = |index: usize| {
         let partner = rig.map.mirror_partner(index).unwrap_or(index);
         let still = far[index] < STILL && far[partner] < STILL && !(index == 0 && device.travels());
         // What is the middle of a joint and of its partner's mirror image serves both.
-        let image = reflected(&mean[partner]);
-        let sign = if image.coords.dot(&mean[index].coords) < 0.0 { -1.0 } else { 1.0 };
-        let both = mean[index].coords + image.coords * sign;
-        let reference =
-            if still || !rig.is_symmetrical() { mean[index] } else { UnitQuaternion::new_normalize(both.into()) };
+        let reference = match &sides {
+            Some(sides) if !still => {
+                let image = sides.image(index, &mean);
+                let sign = if image.coords.dot(&mean[index].coords) < 0.0 { -1.0 } else { 1.0 };
+                UnitQuaternion::new_normalize((mean[index].coords + image.coords * sign).into())
+            }
+            _ => mean[index],
+        };
         JointCoordinates {
             reference: reference.coords.map(|x| x as f32).into(),
             ..JointCoordinates::new(if still { JointKind::Fixed } else { JointKind::Ball })
         }
     };
-    joints.map(joint).collect()
-}
-
-/// A rotation in a mirror that turns X round.
-fn reflected(q: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
-    UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(q.w, q.i, -q.j, -q.k))
+    (0..rig.joints()).map(joint).collect()
 }
 
 /// See [`Rig::levers`].

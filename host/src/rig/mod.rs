@@ -8,8 +8,10 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use coordinates::Coordinates;
 pub use coordinates::JointCoordinates;
+pub use sides::{Mirror, Sides};
 
 mod coordinates;
+mod sides;
 
 use crate::clip::map::CANONICAL;
 use crate::clip::{Canonical, Clip, Joint, JointMap, Skeleton};
@@ -136,14 +138,12 @@ impl Rig {
         Self { coordinates, ..self.clone() }
     }
 
-    /// Whether the left side is the mirror image of the right one, so that coordinates can be mirrored: every bone within 20 degrees.
-    pub fn is_symmetrical(&self) -> bool {
-        let joints = &self.skeleton.joints;
-        joints.iter().enumerate().all(|(index, joint)| {
-            let partner = self.map.mirror_partner(index).unwrap_or(index);
-            let image = Vector3::new(-joints[partner].offset.x, joints[partner].offset.y, joints[partner].offset.z);
-            joint.offset.norm() < 0.01 || joint.offset.angle(&image) < 20f64.to_radians()
-        })
+    /// The sides of a body by its references; `None` where left and right are not mirror images of each other.
+    pub fn sides(&self) -> Option<Sides> {
+        let rest: Pose<MAX_JOINTS> = self.frames().rest();
+        let straight =
+            rest.rotations[..self.joints()].iter().map(|q| UnitQuaternion::new_normalize(q.into_inner().cast()));
+        Sides::find(self, &straight.collect::<Vec<_>>())
     }
 
     /// The device's coordinates.

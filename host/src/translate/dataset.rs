@@ -2,9 +2,7 @@
 
 use std::ops::Range;
 
-use kinesic::rig::JointKind;
-
-use crate::rig::{Locals, Rig};
+use crate::rig::{Locals, Mirror, Rig};
 
 /// Which styled moment belongs to which source frame.
 #[derive(Clone, Debug)]
@@ -79,42 +77,6 @@ impl Sequence {
     /// Rows of the covered source frames.
     pub fn covered_input(&self) -> &[f64] {
         &self.input[self.covered.start * self.channels..self.covered.end * self.channels]
-    }
-}
-
-/// Where every coordinate goes in a mirror that turns X round, and whether its sign changes.
-#[derive(Clone, Debug)]
-pub struct Mirror {
-    from: Vec<(usize, f64)>,
-}
-
-impl Mirror {
-    /// The mirror of a body; `None` where left and right are not mirror images, or joints have other coordinates than balls have.
-    pub fn new(rig: &Rig) -> Option<Self> {
-        let device = rig.frames();
-        let places: Vec<_> = device.places().collect();
-        let balls = places.iter().all(|(kind, _)| matches!(kind, JointKind::Ball | JointKind::Fixed));
-        if !(balls && device.travels() && rig.is_symmetrical()) {
-            return None;
-        }
-        let mut from: Vec<(usize, f64)> = (0..3 * device.rows()).map(|channel| (channel, 1.0)).collect();
-        from[0].1 = -1.0;
-        for (joint, (kind, first)) in places.iter().enumerate() {
-            let (other, start) = places[rig.map.mirror_partner(joint).unwrap_or(joint)];
-            if other != *kind {
-                return None;
-            }
-            // A rotation vector is no arrow: what lies along the mirror's normal stays, the rest turns round.
-            for (axis, sign) in [1.0, -1.0, -1.0].into_iter().enumerate().take(kind.coordinates()) {
-                from[first + axis] = (start + axis, sign);
-            }
-        }
-        Some(Self { from })
-    }
-
-    /// Rows in the mirror.
-    pub fn rows(&self, rows: &[f64]) -> Vec<f64> {
-        rows.chunks_exact(self.from.len()).flat_map(|row| self.from.iter().map(|(at, sign)| sign * row[*at])).collect()
     }
 }
 

@@ -39,7 +39,7 @@ pub use evaluate::{Angles, Errors, EvaluateError, NamedPair, PairReport, Report,
 pub use gate::GateModel;
 pub use model::{BankModel, ExpertModel, TimingModel, TranslatorModel};
 pub use moments::Base;
-pub use play::{HostTranslator, Played, Settings, TIMING_STRENGTH, Timing, play, play_on_clock};
+pub use play::{HostTranslator, Played, Settings, TIMING_STRENGTH, Timing, play, play_on_clock, unfamiliar_percent};
 pub use strength::plausible;
 pub use train::{
     DEFAULT_ORDER, FormChoice, Stage, TrainError, TrainOptions, TrainPair, Trained, partners, train, train_kept,

@@ -60,12 +60,16 @@ pub struct Played {
 }
 
 impl Played {
-    /// Percent of the frames of which less than half of the style counts; `None` for a pack that does not know.
+    /// [`unfamiliar_percent`] of this clip; `None` for a pack that does not know.
     pub fn unfamiliar_percent(&self) -> Option<f64> {
-        let familiar = self.familiar.as_ref()?;
-        let strange = familiar.iter().filter(|familiar| **familiar < 0.5).count();
-        Some(100.0 * strange as f64 / familiar.len().max(1) as f64)
+        self.familiar.as_deref().map(unfamiliar_percent)
     }
+}
+
+/// Percent of the frames of which less than half of the style counts, by how familiar each is.
+pub fn unfamiliar_percent(familiar: &[f32]) -> f64 {
+    let strange = familiar.iter().filter(|familiar| **familiar < 0.5).count();
+    100.0 * strange as f64 / familiar.len().max(1) as f64
 }
 
 /// Translates a clip on the pack's rig and at its frame rate, from the state that holding the first frame leads to.

@@ -8,7 +8,7 @@ use super::baseline;
 use super::candidate::{AFFINE, Candidate, JUDGE, MACHINE_JUDGE, QUICK};
 use super::correspond::{Alignment, OPEN, correspond, correspond_output, correspond_plainly};
 use super::cyclic::walks;
-use super::dataset::{Correspondence, Mirror, Sequence};
+use super::dataset::{Correspondence, Sequence};
 use super::dynamics::Poles;
 use super::fit::Problem;
 use super::gate::GateModel;
@@ -17,7 +17,7 @@ use super::moments::Base;
 use super::simulate::simulate;
 use crate::align::{AlignError, Ends, Series, aligned_distance, aligned_path};
 use crate::pack::Baselines;
-use crate::rig::{Locals, Rig};
+use crate::rig::{Locals, Mirror, Rig};
 use crate::step_cache::StepCache;
 
 /// Which form to train.

@@ -4,7 +4,7 @@
 //!
 //! Two takes of every action and style teach, the other two judge; then the other way round. A pack is trained for every action and
 //! style, with `several` one for all actions of a style, from `normal`, with the library's default options unless an alignment is given. The device's code plays it on the takes of
-//! `normal` that judge. Linear classifiers that have seen the real clips that teach say which style they see.
+//! `normal` that judge, and on the mirror images of them. Linear classifiers that have seen the real clips that teach say which style they see.
 
 mod classifier;
 mod clips;
@@ -134,6 +134,13 @@ impl<'a> Learned<'a> {
         });
         let report = evaluate(&pack, rig, &self.baselines, Some(&self.turns), &named)?;
         tally.errors.extend(report.pairs.into_iter().map(|pair| (ACTIONS[action], pair.errors)));
+        let sides = rig.sides().ok_or("a body whose sides are not alike")?;
+        let images = judge.map(|pair| pair.map(|take| sides.mirrored(&take.clip)));
+        let named = images
+            .each_ref()
+            .map(|[source, target]| NamedPair { source: ("source", source), target: ("target", target) });
+        let report = evaluate(&pack, rig, &self.baselines, None, &named)?;
+        tally.images.extend(report.pairs.into_iter().map(|pair| (ACTIONS[action], pair.errors)));
         Ok(())
     }
 }

@@ -36,6 +36,7 @@ pub struct Tally {
     called: [[[[usize; COUNT]; COUNT]; NAMES.len()]; SEEN],
     /// What was done, and how far from the target it came out.
     pub errors: Vec<(&'static str, Errors)>,
+    pub images: Vec<(&'static str, Errors)>,
     /// Sums of squared deviations of rotations by style: of targets, of outputs.
     spread: [[f64; 2]; COUNT],
 }
@@ -78,31 +79,9 @@ impl Tally {
 
     /// Open ends: a take may begin on the other foot.
     fn print_distances(&self) {
-        println!("\nAligned RMS joint distance to the target, cm, open ends\n");
-        println!("| action | outputs | source | offset | affine | **output** |\n|---|---|---|---|---|---|");
-        let mut names: Vec<&str> = Vec::new();
-        for (name, _) in &self.errors {
-            if !names.contains(name) {
-                names.push(name);
-            }
-        }
-        let row = |name: &str, errors: Vec<&Errors>| {
-            let mean = |of: fn(&Errors) -> f64| errors.iter().map(|e| of(e)).sum::<f64>() / errors.len() as f64;
-            let [source, offset, affine, output] = [
-                mean(|e| e.open_identity_cm),
-                mean(|e| e.open_offset_cm),
-                mean(|e| e.open_affine_cm),
-                mean(|e| e.open_error_cm),
-            ];
-            let count = errors.len();
-            println!("| {name} | {count} | {source:.2} | {offset:.2} | {affine:.2} | **{output:.2}** |");
-        };
-        for name in &names {
-            row(name, self.errors.iter().filter(|(of, _)| *of == *name).map(|(_, errors)| errors).collect());
-        }
-        row("all", self.errors.iter().map(|(_, errors)| errors).collect());
+        print_errors("Aligned RMS joint distance to the target, cm, open ends", &self.errors);
+        print_errors("The same of the mirror images of these takes", &self.images);
     }
-
     fn print_angles(&self) {
         println!("\nMean angle to the target, degrees; mean of {} outputs\n", self.errors.len());
         println!("| joint | source | offset | affine | **output** |\n|---|---|---|---|---|");
@@ -125,4 +104,30 @@ impl Tally {
         row("leaves: head, hands, toes", &|d| d.leaves);
         row("all joints", &|d| d.all);
     }
+}
+
+fn print_errors(title: &str, errors: &[(&str, Errors)]) {
+    println!("\n{title}\n");
+    println!("| action | outputs | source | offset | affine | **output** |\n|---|---|---|---|---|---|");
+    let mut names: Vec<&str> = Vec::new();
+    for (name, _) in errors {
+        if !names.contains(name) {
+            names.push(name);
+        }
+    }
+    let row = |name: &str, errors: Vec<&Errors>| {
+        let mean = |of: fn(&Errors) -> f64| errors.iter().map(|e| of(e)).sum::<f64>() / errors.len() as f64;
+        let [source, offset, affine, output] = [
+            mean(|e| e.open_identity_cm),
+            mean(|e| e.open_offset_cm),
+            mean(|e| e.open_affine_cm),
+            mean(|e| e.open_error_cm),
+        ];
+        let count = errors.len();
+        println!("| {name} | {count} | {source:.2} | {offset:.2} | {affine:.2} | **{output:.2}** |");
+    };
+    for name in &names {
+        row(name, errors.iter().filter(|(of, _)| *of == *name).map(|(_, errors)| errors).collect());
+    }
+    row("all", errors.iter().map(|(_, errors)| errors).collect());
 }

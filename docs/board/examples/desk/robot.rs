@@ -1,6 +1,6 @@
 //! What the robot does in a frame. Nothing here knows of a board.
 
-use kinesic::model::Floats;
+use kinesic::model::{Floats, Ungated};
 use kinesic::play::Move;
 use kinesic::{
     LimitState, Limiter, LoadError, Pack, Pipeline, PipelineState, Player, Servos, Translator, TranslatorState,
@@ -13,8 +13,8 @@ pub const SERVOS: usize = 4;
 const ROWS: usize = 2;
 const STATES: usize = 24;
 
-/// The style, in f32 alone, then the servos' limits.
-type Style = Pipeline<'static, (Translator<'static, ROWS, STATES, Floats>, Limiter<'static, ROWS>), ROWS>;
+/// The style, in f32 alone and without a gate, which machines never have; then the servos' limits.
+type Style = Pipeline<'static, (Translator<'static, ROWS, STATES, Ungated<Floats>>, Limiter<'static, ROWS>), ROWS>;
 
 /// What they remember.
 type State = PipelineState<(TranslatorState<ROWS, STATES>, LimitState<ROWS>), ROWS>;
