@@ -14,7 +14,7 @@ use super::model::ExpertModel;
 use super::moments::Map;
 
 /// Directions in which experts write.
-const RANK: usize = 16;
+const RANK: usize = 24;
 /// An expert's penalty, in the shared model's: what differs between actions is learned first.
 const OF_SHARED: f64 = 1.0 / 6.0;
 /// The same for what an expert adds to all frames of its cluster alike.

@@ -13,7 +13,7 @@ use super::features::{centred, columns, principal, segments, takes, with_states}
 use super::gate::GateModel;
 use super::identify;
 use super::model::{BankModel, TimingModel, TranslatorModel};
-use super::moments::{Base, Map, Moments, Shape, stack};
+use super::moments::{Base, FoldMoments, Map, Moments, Shape, stack};
 use crate::rig::Rig;
 use crate::step_cache::StepCache;
 
@@ -38,6 +38,8 @@ pub struct Problem<'a> {
     /// `(sequence, covered rows, fold)`.
     segments: Vec<(usize, Range<usize>, usize)>,
     folds: usize,
+    /// Whether every clip counts the same, however long it is.
+    alike: bool,
 }
 
 impl<'a> Problem<'a> {
@@ -70,7 +72,13 @@ impl<'a> Problem<'a> {
             basis,
             segments,
             folds,
+            alike: false,
         }
+    }
+
+    /// The same with clips that all count the same: of several actions the long one must not decide.
+    pub fn alike(self) -> Self {
+        Self { alike: true, ..self }
     }
 
     /// The same, judged on other takes of the actions that it is trained on instead of on other actions.
@@ -166,9 +174,11 @@ impl<'a> Problem<'a> {
             .collect();
         let of =
             |index: usize, range: Range<usize>| Moments::of(shape, stacked[index].subrows(range.start, range.len()));
+        let mean = stacked.iter().map(Mat::nrows).sum::<usize>() as f64 / stacked.len().max(1) as f64;
+        let counts = |index: usize| if self.alike { mean / stacked[index].nrows().max(1) as f64 } else { 1.0 };
         let mut total = Moments::zero(shape);
         for (index, rows) in stacked.iter().enumerate() {
-            total.add(&of(index, 0..rows.nrows()), 1.0);
+            total.add(&of(index, 0..rows.nrows()), counts(index));
         }
         let mut train = vec![total.clone(); self.folds];
         let mut held = vec![Moments::zero(shape); self.folds];
@@ -177,9 +187,10 @@ impl<'a> Problem<'a> {
             held[*fold].add(&of(*index, range.clone()), 1.0);
             // Neighbours of a held-back block are nearly copies of it.
             let wide = range.start.saturating_sub(gap)..(range.end + gap).min(stacked[*index].nrows());
-            train[*fold].add(&of(*index, wide.clone()), -1.0);
+            train[*fold].add(&of(*index, wide.clone()), -counts(*index));
             if !self.mirrored.is_empty() {
-                train[*fold].add(&of(self.sequences.len() + index, wide), -1.0);
+                let image = self.sequences.len() + index;
+                train[*fold].add(&of(image, wide), -counts(image));
             }
         }
         FoldMoments { total, train, held }
@@ -221,7 +232,10 @@ impl<'a> Problem<'a> {
                     let states =
                         features.first().map_or(0, Mat::ncols) - coordinates.map_or(3, |c| c.min(self.basis.ncols()));
                     let weight = |c: usize| if self.is_travel(channels.start + c) { 0.0 } else { 1.0 };
-                    members().map(|(_, candidate)| folds.error(candidate, states, &weight)).collect()
+                    let drives = folds.total.features() - states;
+                    let error =
+                        |(_, c): (usize, &Candidate)| folds.error(c.base, &c.penalties(states, drives), &weight);
+                    members().map(error).collect()
                 };
                 let errors = cache.always(&format!("{name} {coordinates:?} {poles:?} {unit:?}"), work);
                 members().map(|(i, _)| i).zip(errors).collect()
@@ -241,7 +255,7 @@ impl<'a> Problem<'a> {
             let (dynamics, shared) = self.whole_body(candidate.coordinates.unwrap_or(0), candidate.poles);
             let all = self.expert_features(gate, &shared);
             let penalties = experts::penalties(candidate, gate.clusters(), dynamics.states(), dynamics.inputs);
-            let sum = self.moments(&all, 0..self.channels).error_with(candidate.base, &penalties, &weight);
+            let sum = self.moments(&all, 0..self.channels).error(candidate.base, &penalties, &weight);
             (sum / (frames.max(1) * self.rows()) as f64).sqrt()
         };
         candidates.par_iter().map(error).collect()
@@ -445,11 +459,13 @@ impl<'a> Problem<'a> {
         };
         let moments = clock.moments(features, 0..3);
         let static_features = features.first().map_or(0, Mat::ncols) - states;
-        let candidate = |penalty| Candidate { penalty, dynamic_penalty: penalty, base: Base::Mean, ..QUICK };
-        let error = |penalty: &f64| moments.error(&candidate(*penalty), states, &|c| if c == 0 { 1.0 } else { 0.0 });
+        let penalties_of =
+            |penalty| Candidate { penalty, dynamic_penalty: penalty, ..QUICK }.penalties(states, static_features);
+        let weight = |c: usize| if c == 0 { 1.0 } else { 0.0 };
+        let error = |penalty: &f64| moments.error(Base::Mean, &penalties_of(*penalty), &weight);
         let penalties = [0.1, 1.0, 10.0, 1e9];
         let best = penalties.into_iter().min_by(|a, b| error(a).total_cmp(&error(b)))?;
-        moments.total.fit(Base::Mean, &candidate(best).penalties(states, static_features))
+        moments.total.fit(Base::Mean, &penalties_of(best))
     }
 
     fn durations(&self) -> [f64; 2] {
@@ -462,29 +478,6 @@ impl<'a> Problem<'a> {
 enum Unit {
     Body,
     Joint(usize),
-}
-
-struct FoldMoments {
-    total: Moments,
-    train: Vec<Moments>,
-    held: Vec<Moments>,
-}
-
-impl FoldMoments {
-    /// Sum over folds of the squared error on held-back frames.
-    fn error(&self, candidate: &Candidate, states: usize, weight: &dyn Fn(usize) -> f64) -> f64 {
-        let drives = self.total.features() - states;
-        self.error_with(candidate.base, &candidate.penalties(states, drives), weight)
-    }
-
-    /// The same for given penalties.
-    fn error_with(&self, base: Base, penalties: &[f64], weight: &dyn Fn(usize) -> f64) -> f64 {
-        let error = |(train, held): (&Moments, &Moments)| {
-            let map = train.fit(base, penalties);
-            map.map_or(f64::INFINITY, |map| held.squared_error(&map, weight))
-        };
-        self.train.iter().zip(&self.held).map(error).sum()
-    }
 }
 
 /// Bias and direct term of one joint, for inputs `(u - mean) * scale`.

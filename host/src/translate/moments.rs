@@ -151,6 +151,24 @@ impl Moments {
     }
 }
 
+/// Moments of all frames, and for each fold those of the frames that train and of those that are held back.
+pub struct FoldMoments {
+    pub total: Moments,
+    pub train: Vec<Moments>,
+    pub held: Vec<Moments>,
+}
+
+impl FoldMoments {
+    /// Sum over folds of the squared error on held-back frames.
+    pub fn error(&self, base: Base, penalties: &[f64], weight: &dyn Fn(usize) -> f64) -> f64 {
+        let error = |(train, held): (&Moments, &Moments)| {
+            let map = train.fit(base, penalties);
+            map.map_or(f64::INFINITY, |map| held.squared_error(&map, weight))
+        };
+        self.train.iter().zip(&self.held).map(error).sum()
+    }
+}
+
 /// Rows `v` for [`Moments::of`].
 pub fn stack(features: &Mat<f64>, inputs: &[f64], outputs: &[f64], channels: usize) -> Mat<f64> {
     let shape = Shape { features: features.ncols(), channels };

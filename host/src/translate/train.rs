@@ -61,8 +61,6 @@ const WHOLE_BODY_ORDER: usize = 64;
 const MARGIN: f64 = 0.03;
 /// Part of the whole-body form's error that the per-joint form may have to replace it: on another take it loses more.
 const PER_JOINT: f64 = 0.9;
-/// Part of a plain model's error that a model of several actions may have to replace it: it is larger.
-const SEVERAL: f64 = 0.97;
 /// Factor by which a warp of a machine's clips must be better than one even clock: it leaves out a part of every reaction.
 const ONE_CLOCK: f64 = 1.5;
 /// Times that the styled clip is aligned anew with what the model makes of the source.
@@ -202,7 +200,7 @@ pub fn train_kept(
             let error = |copies, name| Problem::new(rig, &sequences, copies, fps).validate(&[QUICK], cache, name)[0];
             error(&copies, "mirrored") < error(&[], "not mirrored")
         });
-    let problem = Problem::new(rig, &sequences, if mirrored { &copies } else { &[] }, fps);
+    let mut problem = Problem::new(rig, &sequences, if mirrored { &copies } else { &[] }, fps);
     let grid = grid(rig, options);
     let errors = problem.validate(&grid, cache, "grid");
     let best_of = |keep: &dyn Fn(&Candidate) -> bool| {
@@ -233,6 +231,7 @@ pub fn train_kept(
     let gate = options.gate.then(|| problem.gate()).flatten();
     let experts = gate.as_ref().filter(|_| options.form != FormChoice::PerJoint);
     if let Some(found) = experts.and_then(|gate| several(&problem, gate, &candidate.0, options, cache)) {
+        problem = problem.alike();
         candidate = (found, 100.0 * held_out_error(rig, &problem, &found, gate.as_ref(), pairs, ends)?);
         forms.push(candidate);
     }
@@ -268,7 +267,7 @@ fn ways(rig: &Rig, pairs: &[TrainPair]) -> Vec<Alignment> {
     }
 }
 
-/// The best candidate with experts, where the pairs are of several actions and it is clearly better than `plain` on takes that it has not seen.
+/// The best candidate with experts, where the pairs are of several actions and it is better than `plain` on takes that it has not seen.
 fn several(
     problem: &Problem,
     gate: &GateModel,
@@ -279,24 +278,27 @@ fn several(
     if !gate.several_actions(problem.sequences(), problem.mean()) {
         return None;
     }
-    let problem = problem.clone().by_take();
+    let problem = problem.clone().by_take().alike();
     let limit = options.order.unwrap_or(WHOLE_BODY_ORDER);
     let mut grid = Vec::new();
-    for (coordinates, poles) in [(8, Poles::Relaxation), (12, Poles::Relaxation), (12, Poles::Harmonics2)] {
-        let penalties: &[f64] = if poles.states(coordinates) <= limit { &[1e-3, 3e-3, 1e-2, 3e-2, 0.1] } else { &[] };
-        grid.extend(penalties.iter().map(|penalty| Candidate {
-            coordinates: Some(coordinates),
-            poles,
-            base: Base::Identity,
-            penalty: *penalty,
-            dynamic_penalty: *penalty,
-            experts: true,
-        }));
+    let sizes = [(8, Poles::Relaxation), (12, Poles::Relaxation), (12, Poles::Harmonics2), (16, Poles::Harmonics2)];
+    for (coordinates, poles) in sizes.into_iter().filter(|(coordinates, poles)| poles.states(*coordinates) <= limit) {
+        // The mean is safe as a base: what is unlike the training fades to the source.
+        for base in [Base::Identity, Base::Mean] {
+            grid.extend([1e-3, 3e-3, 1e-2, 3e-2, 0.1].map(|penalty| Candidate {
+                coordinates: Some(coordinates),
+                poles,
+                base,
+                penalty,
+                dynamic_penalty: penalty,
+                experts: true,
+            }));
+        }
     }
     let plain = problem.validate(&[*plain], cache, "by take")[0];
     let errors = cache.always("experts", || problem.validate_experts(&grid, gate));
     let best = grid.iter().zip(errors).min_by(|a, b| a.1.total_cmp(&b.1))?;
-    (best.1 < SEVERAL * plain).then_some(*best.0)
+    (best.1 < plain).then_some(*best.0)
 }
 
 /// Aligned RMS joint distance of what a candidate makes of the folds that it has not seen, root mean square of the pairs, m.
