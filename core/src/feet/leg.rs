@@ -119,7 +119,7 @@ mod tests {
         [[0.0; 3], [0.1, -0.05, 0.0], [0.0, -0.42, 0.0], [0.0, -0.41, 0.0], [0.0, -0.06, 0.14]];
 
     fn skeleton() -> Skeleton<'static> {
-        Skeleton::new(&PARENTS, &OFFSETS, &[], &[]).unwrap()
+        Skeleton::new(&PARENTS, &OFFSETS, &[]).unwrap()
     }
 
     fn bent(knee: f32) -> Pose<5> {

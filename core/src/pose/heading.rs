@@ -128,7 +128,7 @@ mod tests {
 
     #[test]
     fn left_at_plus_x_faces_plus_z() {
-        let skeleton = Skeleton::new(&[0, 0, 0], &[[0.0; 3]; 3], &[], &[[1, 2]]).unwrap();
+        let skeleton = Skeleton::new(&[0, 0, 0], &[[0.0; 3]; 3], &[[1, 2]]).unwrap();
         let mut world = World::<3>::identity();
         world.positions[1].x = 0.1;
         world.positions[2].x = -0.1;

@@ -1,4 +1,4 @@
-//! Skeleton, pose, forward kinematics, heading, and joint positions back to rotations.
+//! Skeleton, pose, forward kinematics and heading.
 //!
 //! Rotations are unit quaternions, local to the parent; the root's is relative to the world. Only `+ - * /` and square
 //! roots are used, all correctly rounded, so results have the same bits on every IEEE 754 machine.
@@ -6,12 +6,10 @@
 mod forward;
 mod heading;
 mod skeleton;
-mod solve;
 
 pub use forward::{World, forward};
 pub use heading::{Heading, local_positions};
 pub use skeleton::Skeleton;
-pub use solve::solve;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 

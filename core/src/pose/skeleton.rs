@@ -10,7 +10,6 @@ pub(crate) type Across<'a> = &'a [[u16; 2]];
 pub struct Skeleton<'a> {
     pub(super) parents: &'a [u16],
     pub(super) offsets: &'a [[f32; 3]],
-    pub(super) aims: &'a [[u16; 2]],
     pub(super) across: Across<'a>,
 }
 
@@ -20,24 +19,16 @@ impl<'a> Skeleton<'a> {
         let joints = pack.metadata().joints.len();
         let parents = pack.slice("skeleton/parents", joints)?;
         let offsets = pack.slice("skeleton/offsets", joints)?;
-        let aims = pack.slice("skeleton/aims", pack.rows("skeleton/aims")?)?;
         let across = pack.slice("skeleton/across", pack.rows("skeleton/across")?)?;
-        Self::new(parents, offsets, aims, across)
+        Self::new(parents, offsets, across)
     }
 
     /// A skeleton from its parts.
     ///
     /// - `parents`: index of each joint's parent, smaller than its own; the root's entry is its own index, 0
     /// - `offsets`: rest position relative to the parent, m; the root's is ignored
-    /// - `aims`: `[joint, descendant]` in order of `joint`: [`solve`](super::solve) turns the joint so that the bones to
-    ///   these descendants point where they should; all but the last bone of such a chain have length zero
     /// - `across`: `[left, right]` pairs of joints whose connection gives the [`Heading`](super::Heading), usually the hips
-    pub fn new(
-        parents: &'a [u16],
-        offsets: &'a [[f32; 3]],
-        aims: &'a [[u16; 2]],
-        across: &'a [[u16; 2]],
-    ) -> Result<Self, LoadError> {
+    pub fn new(parents: &'a [u16], offsets: &'a [[f32; 3]], across: &'a [[u16; 2]]) -> Result<Self, LoadError> {
         let joints = parents.len();
         let value = |tensor, index: Option<usize>| match index {
             Some(index) => Err(LoadError::Value { tensor, index }),
@@ -52,11 +43,8 @@ impl<'a> Skeleton<'a> {
         let misplaced =
             |(joint, parent): (usize, &u16)| if joint == 0 { *parent != 0 } else { *parent as usize >= joint };
         value("skeleton/parents", parents.iter().enumerate().position(misplaced))?;
-        let backward = |aim: &[u16; 2]| aim[0] >= aim[1] || aim[1] as usize >= joints;
-        value("skeleton/aims", aims.iter().position(backward))?;
-        value("skeleton/aims", aims.windows(2).position(|pair| matches!(pair, [a, b] if a[0] > b[0])))?;
         value("skeleton/across", across.iter().position(|pair| pair.iter().any(|joint| *joint as usize >= joints)))?;
-        Ok(Self { parents, offsets, aims, across })
+        Ok(Self { parents, offsets, across })
     }
 
     /// Number of joints.

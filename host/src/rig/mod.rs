@@ -26,9 +26,6 @@ pub const MAX_ROWS: usize = MAX_JOINTS + 1;
 /// A frame at the host's capacity.
 pub type HostFrame = Frame<MAX_ROWS>;
 
-/// Bones shorter than this have no direction, m.
-const SHORTEST_BONE: f64 = 1e-4;
-
 /// Stands for a canonical joint that the skeleton does not have.
 const UNKNOWN: u16 = u16::MAX;
 
@@ -66,7 +63,6 @@ pub struct Rig {
     pub map: JointMap,
     parents: Vec<u16>,
     offsets: Vec<[f32; 3]>,
-    aims: Vec<[u16; 2]>,
     across: Vec<[u16; 2]>,
     coordinates: Coordinates,
 }
@@ -104,7 +100,6 @@ impl Rig {
         let rig = Self {
             parents: skeleton.joints.iter().map(|j| j.parent.unwrap_or(0) as u16).collect(),
             offsets: skeleton.joints.iter().map(|j| j.offset.map(|x| x as f32).into()).collect(),
-            aims: aims(skeleton),
             coordinates,
             across,
             skeleton: skeleton.clone(),
@@ -300,7 +295,7 @@ impl Rig {
 
     /// The device's view, checked.
     fn checked(&self) -> Result<DeviceSkeleton<'_>, LoadError> {
-        DeviceSkeleton::new(&self.parents, &self.offsets, &self.aims, &self.across)
+        DeviceSkeleton::new(&self.parents, &self.offsets, &self.across)
     }
 
     /// The device's view.
@@ -322,7 +317,6 @@ impl Rig {
         }
         pack.u16s("skeleton/parents", 1, &self.parents);
         pack.f32s("skeleton/offsets", 3, self.offsets.as_flattened());
-        pack.u16s("skeleton/aims", 2, self.aims.as_flattened());
         pack.u16s("skeleton/across", 2, self.across.as_flattened());
         let ends: Vec<f32> = self
             .skeleton
@@ -448,35 +442,4 @@ fn hips_axis(skeleton: &Skeleton, map: &JointMap) -> Option<[f32; 3]> {
     let [left, right] = [map.joint(Canonical::LHip)?, map.joint(Canonical::RHip)?].map(|joint| rest[joint]);
     let axis = (left - right).try_normalize(1e-6)?;
     Some(axis.map(|x| x as f32).into())
-}
-
-/// Which bones turn which joint: `[joint, descendant]`, in order of the joint.
-///
-/// A joint is turned by the bones that are rigidly attached to it; if these leave a turn open (none, or all on one line),
-/// also by those behind joints of no length (CMU skeletons hang both legs and the spine from such joints).
-fn aims(skeleton: &Skeleton) -> Vec<[u16; 2]> {
-    let joints = &skeleton.joints;
-    let mut aims = Vec::new();
-    for joint in 0..joints.len() {
-        let children = |of: usize| (of + 1..joints.len()).filter(move |c| joints[*c].parent == Some(of));
-        let has_length = |child: &usize| joints[*child].offset.norm() > SHORTEST_BONE;
-        let mut bones: Vec<usize> = children(joint).filter(has_length).collect();
-        let open = bones.is_empty() || bones.len() > 1 && on_one_line(bones.iter().map(|b| joints[*b].offset));
-        if open {
-            let mut hidden: Vec<usize> = children(joint).filter(|c| !has_length(c)).collect();
-            while let Some(behind) = hidden.pop() {
-                for child in children(behind) {
-                    if has_length(&child) { bones.push(child) } else { hidden.push(child) }
-                }
-            }
-            bones.sort_unstable();
-        }
-        aims.extend(bones.into_iter().map(|bone| [joint as u16, bone as u16]));
-    }
-    aims
-}
-
-fn on_one_line(mut bones: impl Iterator<Item = Vector3<f64>>) -> bool {
-    let Some(first) = bones.next() else { return true };
-    bones.all(|bone| bone.cross(&first).norm() < 0.02 * bone.norm() * first.norm())
 }
