@@ -26,7 +26,7 @@ pub(super) mod orient;
 mod plain;
 mod rows;
 mod select;
-mod spikes;
+pub(super) mod spikes;
 #[cfg(test)]
 mod tests;
 mod text;
