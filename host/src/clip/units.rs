@@ -112,6 +112,15 @@ impl Unit {
     }
 }
 
+impl Unit {
+    /// What the unit could be as well, for a leg of `leg` units, as a note; none where the size decides.
+    pub(super) fn uncertain(self, leg: f64) -> Option<String> {
+        let could = |other: Unit| format!("{other} (a leg of {:.2} m)", leg * other.metres());
+        let list = self.others(leg).into_iter().map(could).collect::<Vec<_>>().join(" or ");
+        (!list.is_empty()).then(|| format!("The unit is not certain: it could be {list} as well; --units says which."))
+    }
+}
+
 impl fmt::Display for Unit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -29,7 +29,7 @@ mod select;
 pub(super) mod spikes;
 #[cfg(test)]
 mod tests;
-mod text;
+pub(super) mod text;
 pub mod write;
 
 use std::io::Read;

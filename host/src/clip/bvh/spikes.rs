@@ -105,7 +105,9 @@ pub(in crate::clip) fn leaps(path: &[Vector3<f64>], leap: &Leap) -> Vec<usize> {
             continue;
         }
         let soon = |at: &usize| sane[*at] <= sane[good] + leap.second;
-        let apart = |at: usize| (path[sane[good + 1]] - path[sane[at]]).norm() > leap.step;
+        // It leaps back as it leapt away: who wanders back was there.
+        let leapt = |from: usize, to: usize| (path[sane[from]] - path[sane[to]]).norm() > leap.step;
+        let apart = |at: usize| leapt(good + 1, at) && leapt(at - 1, at);
         match (good + 2..sane.len()).take_while(soon).find(|&at| near(good, at) && apart(at)) {
             Some(back) => {
                 lost.extend(&sane[good + 1..back]);
@@ -164,15 +166,13 @@ fn alike(a: &UnitQuaternion<f64>, b: &UnitQuaternion<f64>) -> f64 {
 /// Frames and joints that turn far within a frame and come back in the next.
 fn glitches(clip: &Clip, limits: &[f64]) -> Vec<(usize, usize)> {
     let n = clip.skeleton.len();
-    // Near again: within a quarter of the way out. What may turn by half a turn is not looked at.
-    let cosines: Vec<[f64; 2]> = limits
-        .iter()
-        .map(|limit| if *limit > 3.0 { [-1.0, 2.0] } else { [(limit / 2.0).cos(), (limit / 8.0).cos()] })
-        .collect();
+    // What may turn by half a turn is not looked at.
+    let far: Vec<f64> = limits.iter().map(|limit| if *limit > 3.0 { -1.0 } else { (limit / 2.0).cos() }).collect();
     let leaps = |at: &usize| {
-        let [far, back] = cosines[at % n];
         let [before, here, after] = [at - n, *at, at + n].map(|i| &clip.rotations[i]);
-        alike(before, here) < far && alike(here, after) < far && alike(before, after) > back
+        let out = alike(before, here).max(alike(here, after));
+        // Near again: within a quarter of the way out.
+        out < far[at % n] && alike(before, after).min(1.0).acos() < out.min(1.0).acos() / 4.0
     };
     let all = (n..clip.rotations.len().saturating_sub(n)).into_par_iter().with_min_len(1 << 14);
     all.filter(leaps).map(|at| (at / n, at % n)).collect()

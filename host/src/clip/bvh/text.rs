@@ -82,7 +82,7 @@ fn byte_by_byte(bytes: &[u8]) -> String {
 }
 
 /// Text of two bytes a character: with a byte-order mark, or every second byte zero at the start.
-fn utf16(bytes: &[u8]) -> Option<String> {
+pub(in crate::clip) fn utf16(bytes: &[u8]) -> Option<String> {
     let (little, bytes) = match bytes {
         [0xff, 0xfe, rest @ ..] => (true, rest),
         [0xfe, 0xff, rest @ ..] => (false, rest),
