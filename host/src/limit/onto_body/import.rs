@@ -249,7 +249,10 @@ fn limit(
                 let angle = cosine.clamp(-1.0, 1.0).acos().to_degrees();
                 let what =
                     format!("'{}' and '{}' are {angle:.1} degrees apart, expected 90", name(before), name(index));
-                let help = "hinges of one joint stand at right angles: give one of them to a neighbouring joint of the skeleton";
+                let help = format!(
+                    "hinges of one joint stand at right angles: give '{}' to the neighbouring joint of the skeleton",
+                    name(index)
+                );
                 return Err(RobotError::new(place, what, help));
             }
             straight -= other * straight.dot(other);
