@@ -5,6 +5,7 @@
 //! runs that very crate to preview, apply and evaluate.
 
 pub mod align;
+mod cells;
 pub mod checkpoint;
 pub mod clip;
 pub mod components;

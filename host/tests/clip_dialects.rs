@@ -64,9 +64,13 @@ fn common_faults_with_a_certain_meaning_are_read_and_noted() {
     let utf16: Vec<u8> = "\u{feff}".encode_utf16().chain(SOUND.encode_utf16()).flat_map(u16::to_le_bytes).collect();
     let mut packed = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::default());
     packed.write_all(SOUND.as_bytes()).expect("packed");
-    let mut shift_jis = SOUND.as_bytes().to_vec();
-    let at = SOUND.find("Chest").expect("there");
-    shift_jis.splice(at..at + 5, [0x8f, 0xe3, b'1']);
+    let two_bytes = |name: &[u8]| {
+        let mut text = SOUND.as_bytes().to_vec();
+        let at = SOUND.find("Chest").expect("there");
+        text.splice(at..at + 5, name.iter().copied());
+        text
+    };
+    let shift_jis = two_bytes(&[0x8f, 0xe3, b'1']);
     let wrapped = SOUND.replace("0 0 0 1 1", "0 0 0\n1 1");
     let three = "    CHANNELS 3 Zrotation Xrotation Yrotation\n    End Site\n    {\n      OFFSET 0 30";
     let cases: Vec<(&str, Vec<u8>, &str)> = vec![
@@ -74,7 +78,7 @@ fn common_faults_with_a_certain_meaning_are_read_and_noted() {
         ("one frame fewer", swap("Frames: 3", "Frames: 4"), "declares 4 frames, the file has 3"),
         ("no count", swap("Frames: 3\n", ""), "not given"),
         ("count 0", swap("Frames: 3", "Frames: 0"), "not given"),
-        ("wrapped", wrapped.into_bytes(), "broken over several lines"),
+        ("wrapped", wrapped.clone().into_bytes(), "broken over several lines"),
         ("CR", SOUND.replace('\n', "\r").into_bytes(), "CR alone"),
         ("UTF-16", utf16, "UTF-16"),
         ("gzip", packed.finish().expect("packed"), "gzip"),
@@ -84,6 +88,16 @@ fn common_faults_with_a_certain_meaning_are_read_and_noted() {
         ("EndSite", swap("End Site", "EndSite"), ""),
         ("no colon", swap("Frames: 3\nFrame Time: 0", "Frames 3\nFrame Time 0"), ""),
         ("name twice", swap("JOINT Leg", "JOINT Chest"), "'Chest_2'"),
+        ("CR and a last LF", (SOUND.replace('\n', "\r") + "\n").into_bytes(), "CR alone"),
+        ("frame time first", swap("Frames: 3\nFrame Time: 0.033333", "Frame Time: 0.033333\nFrames: 3"), ""),
+        ("empty count", swap("Frames: 3", "Frames:"), "not given"),
+        ("whole numbers between commas", swap("0.5 90 0 0 0 0 1 10 0 0 5 0", "0.5,90,0,0,0,0,1,10,0,0,5,0"), "between"),
+        ("wrapped, one frame more", wrapped.replace("Frames: 3", "Frames: 2").into_bytes(), "over several lines"),
+        ("wrapped, no count", wrapped.replace("Frames: 3", "Frames: 0").into_bytes(), "over several lines"),
+        ("wrapped and glued", wrapped.replace("0 -7 -7 0", "0-7-7 0").into_bytes(), "without a blank"),
+        ("glued OFFSET", swap("OFFSET 0 -90 0", "OFFSET 0.0-90.0 0.0"), "'0.0-90.0' was taken apart"),
+        ("Shift-JIS with braces in it", two_bytes(b"\x83\x7b\x83\x7d\x81\x5b"), "not UTF-8"),
+        ("GBK with a brace in it", two_bytes(b"\xb0\x7b"), "not UTF-8"),
         ("glued minus", SOUND.replace("0 -7 -7 0", "0-7-7 0").into_bytes(), "without a blank"),
         (
             "scale",
@@ -99,6 +113,10 @@ fn common_faults_with_a_certain_meaning_are_read_and_noted() {
         assert!(same(&clip, &sound), "{name}: {:?}", clip.root);
         assert!(note.is_empty() || clip.notes.iter().any(|n| n.contains(note)), "{name}: {:?}", clip.notes);
     }
+    // A number that is missing is no line that was broken.
+    let missing = wrapped.replace("Frames: 3", "Frames: 2").replace("0.5 90 1 0", "0.5 90 1");
+    let error = written(folder.path(), "missing.bvh", missing.as_bytes(), &ReadOptions::default());
+    assert!(error.expect_err("a number is missing").to_string().contains("expected 12"));
     let rigid = swap(three, "    End Site\n    {\n      OFFSET 0 30");
     let rigid = String::from_utf8(rigid)
         .expect("text")
@@ -127,6 +145,12 @@ fn one_of_several_figures_is_chosen_by_its_root() {
     let first = written(folder.path(), "two.bvh", both.as_bytes(), &ReadOptions::default()).expect("the first");
     assert_eq!((first.skeleton.joints[0].name.as_str(), first.frames(), first.skeleton.len()), ("Hips", 3, 3));
     assert!(first.notes.iter().any(|n| n.contains("2 figures")), "{:?}", first.notes);
+    // Two figures of one kind: the names of their joints are no names given twice.
+    let twins = format!("HIERARCHY\n{figure}{figure}MOTION{lines}");
+    let second = ReadOptions { root: Some("Hips_2".into()), ..Default::default() };
+    let second = written(folder.path(), "twins.bvh", twins.as_bytes(), &second).expect("the second");
+    assert_eq!(second.skeleton.joints[1].name, "Chest");
+    assert_eq!(second.notes.iter().filter(|n| n.contains("was used")).count(), 1, "{:?}", second.notes);
     let named = |root: &str| ReadOptions { root: Some(root.into()), ..Default::default() };
     let second = written(folder.path(), "two.bvh", both.as_bytes(), &named("Hips2")).expect("the second");
     assert_eq!(second.skeleton.joints[1].name, "Chest2");

@@ -126,6 +126,9 @@ fn clocks_units_and_axes_of_other_recorders_are_told() {
         ("ticks", written(|t| t * 1e4, plain), "100 ns"),
         ("millimetres", written(|t| t, scaled(1000.0)), "Units: mm assumed"),
         ("centimetres", written(|t| t, scaled(100.0)), "Units: cm assumed"),
+        ("nanoseconds", written(|t| t * 1e6, plain), "counts nanoseconds"),
+        ("feet", written(|t| t, scaled(1.0 / 0.3048)), "Units: foot assumed"),
+        ("decimetres", written(|t| t, scaled(10.0)), "Units: dm assumed"),
         ("Y down", written(|t| t, |_, [x, y, z]| [-x, -y, z]), "-Y up found"),
     ];
     for (name, text, note) in cases {
@@ -142,6 +145,86 @@ fn clocks_units_and_axes_of_other_recorders_are_told() {
     let clip = read(&numbers);
     assert!(clip.notes.iter().any(|n| n.contains("frame numbers")), "{:?}", clip.notes);
     assert_eq!((clip.frames(), clip.fps().round()), (UNEVEN.len(), 30.0));
+    // A clock of hours makes one frame of everything.
+    let hours = written(|t| t / 3.6e6, plain);
+    let error = parse(hours.as_bytes(), &KinectOptions::default()).expect_err("one frame").to_string();
+    assert!(error.contains("counts in another unit"), "{error}");
+}
+
+#[test]
+fn tables_of_other_programs_are_read() {
+    let text = recording(&UNEVEN);
+    let (header, rows) = text.split_once('\n').expect("both");
+    let utf16 = |text: &str| "\u{feff}".encode_utf16().chain(text.encode_utf16()).flat_map(u16::to_le_bytes).collect();
+    let renamed = |from: &str, to: &str| (header.replace(from, to) + "\n" + rows).into_bytes();
+    let azure =
+        header.replace("HipCenter", "PELVIS_").replace("ShoulderCenter", "NECK_").replace(",Spine", ",SPINE_NAVEL_");
+    let second = header
+        .replace("HipCenter", "SpineBase")
+        .replace("ShoulderCenter", "SpineShoulder")
+        .replace(",SpineX", ",SpineMidX");
+    let cases: [(&str, Vec<u8>); 8] = [
+        ("semicolons", text.replace(',', ";").into_bytes()),
+        ("tabs", text.replace(',', "\t").into_bytes()),
+        ("decimal commas", text.replace(',', ";").replace('.', ",").into_bytes()),
+        ("UTF-16", utf16(&text)),
+        ("underscores", renamed("CenterX", "Center_X")),
+        ("points", renamed("HipCenterX,HipCenterY", "hipcenter.x,hipcenter.y")),
+        ("Azure", (azure + "\n" + rows).into_bytes()),
+        ("the second Kinect", (second.replace(",SpineY,SpineZ", ",SpineMidY,SpineMidZ") + "\n" + rows).into_bytes()),
+    ];
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("table.csv");
+    let sound = parse(text.as_bytes(), &KinectOptions::default()).expect("sound").clip;
+    for (name, bytes) in cases {
+        std::fs::write(&path, bytes).expect("written");
+        let clip = clip::read(&path).unwrap_or_else(|e| panic!("{name}: {e}"));
+        assert_eq!(clip.root, sound.root, "{name}");
+    }
+}
+
+#[test]
+fn several_people_are_told_apart_or_said() {
+    let text = recording(&UNEVEN);
+    let (header, rows) = text.split_once('\n').expect("both");
+    let pair = |other: &str| {
+        let moved = |cell: &str| cell.parse::<f64>().map_or(cell.to_owned(), |x| (x + 1.0).to_string());
+        let row = |line: &str| {
+            let (time, cells) = line.split_once(',').unwrap_or_default();
+            let cells: Vec<String> =
+                cells.split(',').map(|cell| if cell == "565" { other.to_owned() } else { moved(cell) }).collect();
+            format!("{line}\n{time},{}\n", cells.join(","))
+        };
+        format!("{header}\n{}", rows.lines().map(row).collect::<String>())
+    };
+    let sound = parse(text.as_bytes(), &KinectOptions::default()).expect("sound").clip;
+    for (other, note) in [("566", "'565' has the most rows"), ("565", "several people?")] {
+        let clip = parse(pair(other).as_bytes(), &KinectOptions::default()).expect("read").clip;
+        assert!(clip.notes.iter().any(|n| n.contains(note)), "{:?}", clip.notes);
+        assert_eq!(clip.root, sound.root);
+    }
+}
+
+#[test]
+fn a_joint_that_was_never_seen_is_no_origin_and_one_that_leaps_is_named() {
+    let at = |joint: usize, place: &dyn Fn(usize, [f64; 3]) -> [f64; 3]| {
+        let count = std::cell::Cell::new(0);
+        written(|t| t, |row, p| if count.replace(count.get() + 1) % FIGURE.len() == joint { place(row, p) } else { p })
+    };
+    for (joint, name) in [(11, "HandRight"), (0, "HipCenter")] {
+        let error =
+            parse(at(joint, &|_, _| [0.0; 3]).as_bytes(), &KinectOptions::default()).expect_err(name).to_string();
+        assert!(error.contains(name) && error.contains("never tracked"), "{error}");
+    }
+    let leaping = at(11, &|row, p| if row == 3 { [-1.0; 3] } else { p });
+    let sound = parse(recording(&UNEVEN).as_bytes(), &KinectOptions::default()).expect("sound").clip;
+    for repair in [false, true] {
+        let clip = parse(leaping.as_bytes(), &KinectOptions { repair, ..Default::default() }).expect("read").clip;
+        assert!(clip.notes.iter().any(|n| n.contains("'HandRight' leaps")), "{:?}", clip.notes);
+        let off =
+            clip.all_positions().iter().zip(sound.all_positions()).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+        assert_eq!(off < 0.06, repair, "{off} m");
+    }
 }
 
 #[test]
@@ -186,7 +269,7 @@ fn broken_recordings_are_refused_by_line_and_column() {
     let cases: Vec<(String, &[&str])> = vec![
         (String::new(), &["is empty", "Timestamp"]),
         (edit(1, 0, "Stamp"), &["line 1", "'Timestamp' is missing"]),
-        (edit(1, 12, "Head_Z"), &["line 1", "'HeadZ' is missing"]),
+        (edit(1, 12, "HeadW"), &["line 1", "'HeadZ' is missing"]),
         (edit(3, 6, "1.O2"), &["line 3", "'SpineZ'", "'1.O2' is not a number"]),
         (edit(3, 0, ""), &["line 3", "'Timestamp'"]),
         (edit(4, 0, "36914937.5"), &["line 4", "goes back to 36914937.5", "36914968.025"]),

@@ -142,6 +142,71 @@ fn six_up_axes_are_found_and_given() {
 }
 
 #[test]
+fn who_bends_stands_on_the_feet_all_the_same() {
+    // Bent by 150 degrees at the spine, on a torso that is longer than the legs are.
+    let mut clip = person();
+    let n = clip.skeleton.len();
+    let spine = clip.skeleton.find("Spine").expect("a spine");
+    clip.skeleton.joints[spine + 1].offset *= 3.0;
+    clip.rotations.iter_mut().for_each(|r| *r = UnitQuaternion::identity());
+    clip.rotations
+        .iter_mut()
+        .skip(spine)
+        .step_by(n)
+        .for_each(|r| *r = UnitQuaternion::from_euler_angles(2.2, 0.0, 0.0));
+    let upright = read(&text(&clip), ReadOptions::default());
+    assert!(!noted(&upright, "up found"), "{:?}", upright.notes);
+    let back = UpAxis::Z.to_y().inverse();
+    clip.root.iter_mut().for_each(|p| *p = back * *p);
+    let mut whole = clip.clone();
+    whole.skeleton.joints.iter_mut().for_each(|j| j.offset = back * j.offset);
+    whole.rotations.iter_mut().for_each(|r| *r = back * *r * back.inverse());
+    clip.rotations.iter_mut().step_by(n).for_each(|r| *r = back * *r);
+    for clip in [whole, clip] {
+        let found = read(&text(&clip), ReadOptions::default());
+        assert!(noted(&found, "Z up found (the feet") && apart(&found, &upright) < 1e-5, "{:?}", found.notes);
+    }
+}
+
+#[test]
+fn who_sits_is_not_turned_upright() {
+    // On the floor, legs stretched along Z to where Z is 0, with a long back.
+    let mut clip = person();
+    let n = clip.skeleton.len();
+    let joint = |name: &str| BODY.iter().position(|b| b.0 == name).expect("a joint");
+    clip.skeleton.joints[joint("Spine1")].offset *= 2.0;
+    clip.rotations.iter_mut().for_each(|r| *r = UnitQuaternion::identity());
+    for leg in ["LeftUpLeg", "RightUpLeg"].map(joint) {
+        let stretched = UnitQuaternion::from_euler_angles(-1.57, 0.0, 0.0);
+        clip.rotations.iter_mut().skip(leg).step_by(n).for_each(|r| *r = stretched);
+    }
+    clip.root.iter_mut().for_each(|p| *p = Vector3::new(0.0, 0.05, -0.8));
+    let found = read(&text(&clip), ReadOptions::default());
+    assert!(!noted(&found, "up found") && noted(&found, "--up -z"), "{:?}", found.notes);
+}
+
+#[test]
+fn a_body_of_unknown_names_travels_with_the_joint_that_carries_it() {
+    let mut clip = person();
+    clip.skeleton.joints.iter_mut().enumerate().for_each(|(i, j)| j.name = format!("joint {i}"));
+    let plain = text(&clip);
+    let (body, motion) = plain.strip_prefix("HIERARCHY\nROOT").and_then(|t| t.split_once("MOTION\n")).expect("both");
+    let channels = "CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation";
+    let target = format!("JOINT target\n{{\nOFFSET 0 0 0\n{channels}\nEnd Site\n{{\nOFFSET 0 0 1\n}}\n}}\n");
+    let scene = format!("HIERARCHY\nROOT scene\n{{\nOFFSET 0 0 0\n{channels}\n{target}JOINT{body}}}\nMOTION\n");
+    let line = |(i, l): (usize, &str)| {
+        if i < 2 { format!("{l}\n") } else { format!("0 0 0 0 0 0 20 0 {} 0 0 0 {l}\n", 5 * i) }
+    };
+    let found = read(&(scene + &motion.lines().enumerate().map(line).collect::<String>()), ReadOptions::default());
+    assert!(
+        noted(&found, "beside 'joint 0', which carries the body") && noted(&found, "'target'"),
+        "{:?}",
+        found.notes
+    );
+    assert!(apart(&found, &read(&plain, ReadOptions::default())) < 1e-9);
+}
+
+#[test]
 fn the_other_hand_is_noted_and_turned_round() {
     let upright = read(&text(&person()), ReadOptions::default());
     assert!(!noted(&upright, "exchanged"), "{:?}", upright.notes);
@@ -170,6 +235,10 @@ fn any_factor_is_a_unit_and_odd_sizes_are_said() {
     let mut child = person();
     child.skeleton.joints.iter_mut().for_each(|j| j.offset *= 37.0 / 80.0);
     assert!(noted(&read(&text(&child), ReadOptions::default()), "not certain"));
+    // Of 39 units: an avatar in inches, as those of virtual worlds are.
+    child.skeleton.joints.iter_mut().for_each(|j| j.offset *= 39.4 / 37.0);
+    let avatar = read(&text(&child), ReadOptions::default());
+    assert!(noted(&avatar, "Units: inch assumed") && noted(&avatar, "could be cm"), "{:?}", avatar.notes);
 }
 
 #[test]
@@ -199,11 +268,12 @@ fn names_of_many_producers_are_known() {
             .replace("tArm", "tUpperArm")
     };
     type Rename<'a> = &'a dyn Fn(&str) -> String;
-    let styles: [(&str, Rename); 7] = [
+    let styles: [(&str, Rename); 8] = [
         ("biovision", &biovision),
         ("unity", &unity),
         ("underscore", &|n| format!("mixamorig_{n}")),
         ("prefix", &|n| format!("Actor7:{}", biovision(n))),
+        ("an actor's name", &|n| format!("Bob_{}", unity(n))),
         ("suffix", &|n| side(n, "", ".?")),
         ("biped", &|n| {
             side(

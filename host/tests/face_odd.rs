@@ -64,12 +64,39 @@ fn table(column: impl Fn(&str, usize) -> String, face: &Landmarks) -> String {
 #[test]
 fn columns_of_other_detectors_are_read() {
     // OpenFace: all x, then all y, underscores, blanks before names and numbers.
-    for column in
-        [|axis: &str, i: usize| format!(" {axis}_{i}"), |axis: &str, i: usize| format!("{}{i}", axis.to_uppercase())]
-    {
+    for column in [
+        |axis: &str, i: usize| format!(" {axis}_{i}"),
+        |axis: &str, i: usize| format!("{}{i}", axis.to_uppercase()),
+        |axis: &str, i: usize| format!("landmark_{i}_{axis}"),
+    ] {
         let faces = landmarks::parse(table(column, &face()).as_bytes(), None).unwrap();
         assert_eq!((faces.len(), faces[0].landmarks, faces[0].picture.as_str()), (1, face(), "7"));
     }
+    // Semicolons; and OpenFace's tool for pictures, which counts faces.
+    let plain = table(|axis, i| format!("{axis}{i}"), &face());
+    for text in [plain.replace(',', ";"), plain.replace("frame,", "face,")] {
+        assert_eq!(landmarks::parse(text.as_bytes(), None).unwrap()[0].landmarks, face());
+    }
+}
+
+#[test]
+fn what_a_detector_did_not_find_or_means_otherwise_is_refused() {
+    let plain = table(|axis, i| format!("{axis}{i}"), &face());
+    let refused = |text: String| landmarks::parse(text.as_bytes(), None).unwrap_err();
+    let failed = plain.replace("frame,", "frame,success,").replace("\n7,", "\n7,0,");
+    assert_eq!(refused(failed), LandmarksFault::Failed { line: 2 });
+    let mesh = plain.replace("frame,", "x68,y68,frame,").replace("\n7,", "\n1,1,7,");
+    assert_eq!(refused(mesh), LandmarksFault::Mesh { last: "x68".into() });
+    let odd = |change: &dyn Fn(&mut Landmarks)| {
+        let mut face = face();
+        change(&mut face);
+        refused(table(|axis, i| format!("{axis}{i}"), &face))
+    };
+    // A nose in the corner of the picture, a mouth left of it, an eye far away.
+    assert!(matches!(odd(&|f| f[30] = [0.0; 2]), LandmarksFault::NotFound { count: 1, .. }));
+    assert!(matches!(odd(&|f| f[48][0] = -1.0), LandmarksFault::NotFound { count: 1, .. }));
+    let astray = odd(&|f| f[36] = [9999.0, 9999.0]);
+    assert!(matches!(&astray, LandmarksFault::Astray { count: 1, list, .. } if list == "36"), "{astray}");
 }
 
 #[test]

@@ -52,6 +52,11 @@ fn soft_limits_of_0_and_0_lock_nothing() {
     let import = made(&soft, "").unwrap();
     assert_eq!(bounds(&import), [-2.4, 0.0]);
     noted(&import, &["elbow", "soft limits of 0 and 0", "left out"]);
+    // Those that leave nothing of the limits are a mistake of theirs.
+    let soft = format!("{LIMIT}<safety_controller soft_lower_limit='1' soft_upper_limit='2' k_velocity='1'/>");
+    let import = made(&soft, "").unwrap();
+    assert_eq!(bounds(&import), [-2.4, 0.0]);
+    noted(&import, &["elbow", "soft limits of 1 and 2", "nothing", "left out"]);
     // Others hold.
     let soft = format!("{LIMIT}<safety_controller soft_lower_limit='-2' soft_upper_limit='-0.1' k_velocity='1'/>");
     assert_eq!(bounds(&made(&soft, "").unwrap()), [-2.0, -0.1]);
@@ -62,6 +67,12 @@ fn bounds_of_0_and_0_are_kept_and_said() {
     let import = made("<limit lower='0' upper='0' velocity='9'/>", "").unwrap();
     assert_eq!(bounds(&import), [0.0, 0.0]);
     noted(&import, &["elbow", "bounds of 0 and 0 lock it", "write lower and upper"]);
+    noted(&made("<limit lower='-1' upper='-1' velocity='9'/>", "").unwrap(), &["bounds of -1 and -1 lock it"]);
+    // A follower that cannot move locks whom it follows.
+    let locked = follower("finger", ["fore", "a"], "elbow", "<limit lower='0' upper='0' velocity='9'/>");
+    let import = made(LIMIT, &locked).unwrap();
+    assert_eq!(bounds(&import), [0.0, 0.0]);
+    noted(&import, &["finger", "bounds of 0 and 0 lock it"]);
 }
 
 #[test]
@@ -72,12 +83,39 @@ fn no_bounds_written_as_huge_ones_are_none() {
         assert_eq!(bounds(&import), [-half, half], "{huge}");
         noted(&import, &["elbow", "none", "half a turn"]);
     }
+    for (one, [low, high]) in [
+        ("lower='-2.4' upper='1e16'", [-2.4, 3.142]),
+        ("lower='-inf' upper='0'", [-3.142, 0.0]),
+        ("lower='4' upper='inf'", [4.0, 10.283]),
+    ] {
+        let import = made(&format!("<limit {one} velocity='9'/>"), "").unwrap();
+        assert_eq!(bounds(&import), [low, high], "{one}");
+        noted(&import, &["elbow", "one bound is none"]);
+    }
+    // A velocity may be none as well: then one is asked for, by the joint's name.
+    for huge in ["inf", "1e16"] {
+        let refused = made(&format!("<limit lower='-2.4' upper='0' velocity='{huge}'/>"), "").unwrap_err();
+        let text = format!("{refused} {}", refused.help);
+        assert!(text.contains("elbow") && text.contains("--velocity"), "{huge}: {text}");
+    }
 }
 
 #[test]
 fn a_follower_of_nothing_is_said_and_one_of_a_follower_counts() {
     let lost = follower("finger", ["fore", "a"], "elbo", "<limit lower='-1' upper='1' velocity='9'/>");
     noted(&made(LIMIT, &lost).unwrap(), &["finger", "'elbo'", "did you mean 'elbow'"]);
+    // The mapped joint itself may follow nothing, or a ring: it moves by itself.
+    for leader in ["elbo", "elbow", "ring"] {
+        let elbow = format!("{LIMIT}<mimic joint='{leader}'/>");
+        let ring = follower("ring", ["fore", "a"], "elbow", "");
+        let import = made(&elbow, &ring).unwrap();
+        assert_eq!(bounds(&import), [-2.4, 0.0], "{leader}");
+        noted(&import, &["elbow (line 2)", "follows", leader]);
+    }
+    // A follower that allows nothing of what its leader may do is named.
+    let other = follower("finger", ["fore", "a"], "elbow", "<limit lower='2' upper='3' velocity='9'/>");
+    let refused = made(LIMIT, &other).unwrap_err().to_string();
+    assert!(refused.contains("'finger'") && refused.contains("-2.4 and 0"), "{refused}");
     // b = -0.5 a and a = -0.5 elbow: b in -0.4 .. 0 keeps the elbow above -1.6.
     let first = follower("first", ["fore", "a"], "elbow", "<limit lower='-3' upper='3' velocity='9'/>");
     let second = follower("second", ["a", "b"], "first", "<limit lower='-0.4' upper='0' velocity='9'/>");

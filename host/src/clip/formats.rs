@@ -57,8 +57,7 @@ pub(super) fn is_bvh(head: &[u8]) -> bool {
 
 fn is_kinect(head: &[u8]) -> bool {
     let head = lower(head);
-    let line = head.lines().next().unwrap_or("");
-    line.contains("hipcenterx")
+    kinect::is_header(head.lines().next().unwrap_or(""))
 }
 
 fn is_gltf(head: &[u8]) -> bool {

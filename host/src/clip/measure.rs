@@ -26,17 +26,10 @@ pub(super) fn unit(
     }
     let (leg, measured) = measure_leg(skeleton, map);
     let unit = Unit::detect(leg).ok_or_else(|| bvh::ParseError::UnknownUnits(measured.clone()))?;
-    let makes = |unit: Unit| format!("{:.2} m", leg * unit.metres());
-    notes.push(format!(
-        "Units: {unit} assumed (1 unit = {} m): {measured} makes a leg of {}.",
-        unit.metres(),
-        makes(unit)
-    ));
-    let others = unit.others(leg);
-    if !others.is_empty() {
-        let list = others.iter().map(|&o| format!("{o} (a leg of {})", makes(o))).collect::<Vec<_>>().join(" or ");
-        notes.push(format!("The unit is not certain: it could be {list} as well; --units says which."));
-    }
+    let metres = unit.metres();
+    notes
+        .push(format!("Units: {unit} assumed (1 unit = {metres} m): {measured} makes a leg of {:.2} m.", leg * metres));
+    notes.extend(unit.uncertain(leg));
     Ok(unit)
 }
 

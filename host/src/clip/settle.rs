@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::bvh::orient;
+use super::bvh::{orient, spikes};
 use super::{Clip, JointMap, ReadError, ReadOptions, measure};
 
 /// A clip in metres, as the file says, turned to Y up where its body says so.
@@ -14,6 +14,7 @@ pub(super) fn in_metres(mut clip: Clip, path: &Path, options: &ReadOptions) -> R
         clip.skeleton.joints.iter_mut().for_each(|j| j.offset *= factor);
         clip.notes.push(format!("Units: {unit}, as given."));
     }
+    spikes::mend(&mut clip, options.repair);
     let map = JointMap::choose(&clip.skeleton, options.map.as_ref()).map_err(map_error)?;
     measure::note_names(&mut clip, map.as_ref(), options);
     orient::turn(&mut clip, map.as_ref(), options);

@@ -84,8 +84,8 @@ impl Unit {
     /// | 1.6 to 4.3 | foot | 0.49 to 1.31 |
     /// | 6 to 9.5 | dm | 0.60 to 0.95 |
     /// | 9.5 to 20 | cmu | 0.54 to 1.13 |
-    /// | 20 to 38 | inch | 0.51 to 0.97 |
-    /// | 38 to 130 | cm | 0.38 to 1.30 |
+    /// | 20 to 43 | inch | 0.51 to 1.09 |
+    /// | 43 to 130 | cm | 0.43 to 1.30 |
     /// | 380 to 1300 | mm | 0.38 to 1.30 |
     pub fn detect(leg: f64) -> Option<Unit> {
         match leg {
@@ -93,8 +93,8 @@ impl Unit {
             l if (1.6..=4.3).contains(&l) => Some(Unit::Foot),
             l if (6.0..9.5).contains(&l) => Some(Unit::Decimetre),
             l if (9.5..20.0).contains(&l) => Some(Unit::Cmu),
-            l if (20.0..38.0).contains(&l) => Some(Unit::Inch),
-            l if (38.0..=130.0).contains(&l) => Some(Unit::Centimetre),
+            l if (20.0..43.0).contains(&l) => Some(Unit::Inch),
+            l if (43.0..=130.0).contains(&l) => Some(Unit::Centimetre),
             l if (380.0..=1300.0).contains(&l) => Some(Unit::Millimetre),
             _ => None,
         }
@@ -109,6 +109,15 @@ impl Unit {
             _ => &[],
         };
         rivals.iter().copied().filter(|unit| *unit != self).collect()
+    }
+}
+
+impl Unit {
+    /// What the unit could be as well, for a leg of `leg` units, as a note; none where the size decides.
+    pub(super) fn uncertain(self, leg: f64) -> Option<String> {
+        let could = |other: Unit| format!("{other} (a leg of {:.2} m)", leg * other.metres());
+        let list = self.others(leg).into_iter().map(could).collect::<Vec<_>>().join(" or ");
+        (!list.is_empty()).then(|| format!("The unit is not certain: it could be {list} as well; --units says which."))
     }
 }
 

@@ -4,8 +4,10 @@ use std::path::{Path, PathBuf};
 
 use kinesic::face::{FaceFrame, Landmarks, POINTS};
 
-/// Names under which tables hold the picture's file name, and the person's.
-const PICTURE: [&str; 6] = ["image", "image_id", "file", "filename", "image_path", "frame"];
+use crate::cells;
+
+/// Names under which tables hold the picture's file name, or its number, and the person's.
+const PICTURE: [&str; 7] = ["image", "imageid", "file", "filename", "imagepath", "frame", "face"];
 const PERSON: [&str; 2] = ["subject", "person"];
 
 /// A face of a table.
@@ -51,7 +53,20 @@ pub enum LandmarksFault {
          (0-16 contour, 17-26 brows, 27-35 nose, 36-47 eyes, 48-67 mouth)"
     )]
     MissingColumn { column: String },
-    #[error("line 1: no column names the picture: expected one of image, image_id, file, filename, image_path, frame")]
+    #[error(
+        "line 1: the columns go on to {last}, the header of a face mesh (mediapipe has 468 or 478 points): expected the 68 landmarks of \
+         iBUG 300-W. Take those points of the mesh that are theirs, in their order, as x0 to y67"
+    )]
+    Mesh { last: String },
+    #[error("line {line}: its detector says that it found no face (success is 0). Remove the line")]
+    Failed { line: u64 },
+    #[error(
+        "line {line}: {count} landmarks are far away from all others, which no face has: {list}. Detect the face again, or remove the line"
+    )]
+    Astray { line: u64, count: usize, list: String },
+    #[error(
+        "line 1: no column names the picture: expected one of image, image_id, file, filename, image_path, frame, face"
+    )]
     NoPicture,
     #[error(
         "line 1: no column '{attribute}' (nor 'posed_{attribute}' or '{attribute}_true'). Columns beside the landmarks: {found}"
@@ -97,7 +112,7 @@ pub fn parse(bytes: &[u8], attribute: Option<&str>) -> Result<Vec<Face>, Landmar
     if bytes.trim_ascii().is_empty() {
         return Err(LandmarksFault::Empty);
     }
-    let mut reader = csv::ReaderBuilder::new().flexible(true).trim(csv::Trim::All).from_reader(bytes);
+    let (_, mut reader) = cells::reader(bytes);
     let broken =
         |e: csv::Error| LandmarksFault::Csv { line: e.position().map_or(1, |p| p.line()), error: e.to_string() };
     let header = reader.headers().map_err(broken)?.clone();
@@ -119,22 +134,30 @@ struct Columns {
     picture: usize,
     person: Option<usize>,
     label: Option<usize>,
+    /// Whether the detector found a face, as OpenFace says.
+    success: Option<usize>,
     points: Vec<[usize; 2]>,
 }
 
 impl Columns {
     fn find(header: &csv::StringRecord, attribute: Option<&str>) -> Result<Self, LandmarksFault> {
-        let find = |name: &str| header.iter().position(|h| h.eq_ignore_ascii_case(name));
-        // OpenFace writes x_0, other tools X0.
-        let point = |axis: &str, i: usize| {
-            let column = format!("{axis}{i}");
-            find(&column).or_else(|| find(&format!("{axis}_{i}"))).ok_or(LandmarksFault::MissingColumn { column })
+        let names: Vec<String> = header.iter().map(cells::plain).collect();
+        let find = |name: &str| names.iter().position(|n| n == name);
+        // OpenFace writes x_0, others X0 or landmark_0_x.
+        let column = |axis: &str, i: usize| {
+            let forms = [format!("{axis}{i}"), format!("landmark{i}{axis}"), format!("landmark{axis}{i}")];
+            forms.iter().find_map(|form| find(form))
         };
+        let point =
+            |axis: &str, i| column(axis, i).ok_or(LandmarksFault::MissingColumn { column: format!("{axis}{i}") });
         let points = (0..POINTS).map(|i| Ok([point("x", i)?, point("y", i)?]));
         let points = points.collect::<Result<Vec<_>, _>>()?;
+        if let Some(last) = (POINTS..1000).map_while(|i| column("x", i)).last() {
+            return Err(LandmarksFault::Mesh { last: header.get(last).unwrap_or_default().to_owned() });
+        }
         let named = |attribute: &str| {
             let names = [attribute.to_owned(), format!("posed_{attribute}"), format!("{attribute}_true")];
-            names.iter().find_map(|name| find(name)).ok_or_else(|| {
+            names.iter().find_map(|name| find(&cells::plain(name))).ok_or_else(|| {
                 let others = header.iter().enumerate().filter(|(at, _)| !points.as_flattened().contains(at));
                 let found = others.map(|(_, name)| name).collect::<Vec<_>>().join(", ");
                 LandmarksFault::NoAttribute { attribute: attribute.to_owned(), found }
@@ -144,6 +167,7 @@ impl Columns {
             picture: PICTURE.iter().find_map(|name| find(name)).ok_or(LandmarksFault::NoPicture)?,
             person: PERSON.iter().find_map(|name| find(name)),
             label: attribute.map(named).transpose()?,
+            success: find("success"),
             points,
         })
     }
@@ -157,6 +181,9 @@ impl Columns {
                 Err(LandmarksFault::NotANumber { line, column, found: text(at).to_owned() })
             }
         };
+        if self.success.is_some_and(|at| text(at).parse() == Ok(0.0)) {
+            return Err(LandmarksFault::Failed { line });
+        }
         let mut landmarks: Landmarks = [[0.0; 2]; POINTS];
         for (point, at) in landmarks.iter_mut().zip(&self.points) {
             *point = [number(at[0])? as f32, number(at[1])? as f32];
@@ -179,18 +206,40 @@ impl Columns {
     }
 }
 
+/// Landmarks of the contour: the first of all, and the only ones that a picture may cut off.
+const CONTOUR: usize = 17;
+/// Landmarks further from the middle than so many times half of them are: of 6,039 faces in the wild none is further than 4.4.
+const ASTRAY: f32 = 8.0;
+
 /// Refuses landmarks that were not found, or that are no pixels.
 fn missing(landmarks: &Landmarks, line: u64) -> Result<(), LandmarksFault> {
-    for place in [-1.0, 0.0] {
-        let lost: Vec<String> =
-            landmarks.iter().enumerate().filter(|(_, p)| **p == [place; 2]).map(|(i, _)| i.to_string()).collect();
-        // One landmark may lie in the corner; all in one place are no face, which is said elsewhere.
-        if lost.len() > usize::from(place == 0.0) && lost.len() < POINTS {
-            let at = format!("{place},{place}");
-            return Err(LandmarksFault::NotFound { line, count: lost.len(), at, list: lost.join(" ") });
+    let which = |is: &dyn Fn(usize, &[f32; 2]) -> bool| {
+        let all = landmarks.iter().enumerate().filter(|(i, p)| is(*i, p)).map(|(i, _)| i);
+        all.collect::<Vec<_>>()
+    };
+    let list = |all: &[usize]| all.iter().map(usize::to_string).collect::<Vec<_>>().join(" ");
+    let zeros = which(&|_, p| *p == [0.0; 2]);
+    // One landmark of the contour may lie in the corner.
+    let zeros = if zeros.iter().all(|i| *i < CONTOUR) && zeros.len() == 1 { Vec::new() } else { zeros };
+    // A place that is marked in one coordinate is marked as well.
+    for (at, lost) in [("-1,-1", which(&|_, p| p.contains(&-1.0))), ("0,0", zeros)] {
+        // All in one place are no face, which is said elsewhere.
+        if !lost.is_empty() && lost.len() < POINTS {
+            return Err(LandmarksFault::NotFound { line, count: lost.len(), at: at.into(), list: list(&lost) });
         }
     }
     let size = landmarks.as_flattened().iter().map(|x| x.abs()).fold(0.0, f32::max);
     let spread = landmarks.iter().any(|p| p != &landmarks[0]);
-    if spread && size <= 2.0 { Err(LandmarksFault::Normalised { line, size }) } else { Ok(()) }
+    if spread && size <= 2.0 {
+        return Err(LandmarksFault::Normalised { line, size });
+    }
+    let median = |mut all: Vec<f32>| *all.select_nth_unstable_by(POINTS / 2, f32::total_cmp).1;
+    let middle = [0, 1].map(|axis| median(landmarks.iter().map(|p| p[axis]).collect()));
+    let away = |p: &[f32; 2]| (p[0] - middle[0]).hypot(p[1] - middle[1]);
+    let half = median(landmarks.iter().map(away).collect());
+    let astray = which(&|_, p| half > 0.0 && away(p) > ASTRAY * half);
+    match astray.len() {
+        0 => Ok(()),
+        count => Err(LandmarksFault::Astray { line, count, list: list(&astray) }),
+    }
 }

@@ -89,6 +89,14 @@ impl Robot {
         self.joints.iter().position(|joint| joint.name == name)
     }
 
+    /// Whom a joint follows, unless that leads to no joint, or round in a ring.
+    pub fn leader<'j>(&self, joint: &'j RobotJoint) -> Option<&'j Mimic> {
+        let mimic = joint.mimic.as_ref()?;
+        let next = |at: &usize| self.find(&self.joints[*at].mimic.as_ref()?.joint);
+        let steps = std::iter::successors(Some(self.find(&mimic.joint)?), next).take(LONGEST + 1).count();
+        (steps <= LONGEST).then_some(mimic)
+    }
+
     /// The joint and those that carry it, outwards in.
     pub fn chain(&self, joint: usize) -> impl Iterator<Item = usize> + '_ {
         std::iter::successors(Some(joint), |at| self.joints[*at].parent)

@@ -1,9 +1,12 @@
 //! From channels to a [`Clip`]: rotations, bones, units, root.
 
+use std::collections::BTreeSet;
+
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::hierarchy::RawJoint;
 use super::rows::Rows;
+use super::spikes::Leap;
 use super::{ParseError, orient, spikes};
 use crate::clip::map::JointMap;
 use crate::clip::{Clip, Joint, ReadOptions, Skeleton, measure};
@@ -13,6 +16,7 @@ pub(super) const STILL: f64 = 1e-3;
 /// Position channels of one joint over time, and what they do.
 pub(super) struct Track {
     positions: Vec<Vector3<f64>>,
+    mean: Vector3<f64>,
     /// Largest distance from the mean.
     pub spread: f64,
     /// Distance from the file's OFFSET to the mean.
@@ -38,6 +42,7 @@ pub(super) fn clip(
     notes: Vec<String>,
 ) -> Result<Clip, ParseError> {
     let mut draft = Draft::new(raw, rows);
+    draft.leave_out_lost(frame_time);
     draft.relative_positions();
     let skeleton = Skeleton { joints: std::mem::take(&mut draft.joints) };
     let map = joint_map(&skeleton, options)?;
@@ -72,28 +77,62 @@ impl Draft {
         let joints = raw.into_iter().zip(&tracks).map(|(j, track)| Joint {
             name: j.name,
             parent: j.parent,
-            offset: track.as_ref().map_or(j.offset, Track::mean),
+            offset: track.as_ref().map_or(j.offset, |t| t.mean),
             end: j.end,
         });
         Draft { joints: joints.collect(), tracks, rotations, frames, notes: Vec::new(), offsets }
     }
 
-    /// Position channels that hold 0 on every joint below the root mean the OFFSETs: a body has bones.
+    /// Frames in which position channels leap by half of the longest bone and back are lost: no bone is measured by them.
+    fn leave_out_lost(&mut self, frame_time: f64) {
+        let bone = |t: &Option<Track>| t.as_ref().map(|t| spikes::middle(t.positions.iter()).norm());
+        let longest = self.tracks.iter().skip(1).filter_map(bone).fold(0.0, f64::max);
+        if !longest.is_normal() {
+            return;
+        }
+        let leap = Leap { step: 0.5 * longest, absurd: 100.0 * longest, ..Leap::of(frame_time, 0) };
+        let leaping = |t: &&Track| t.spread > 0.4 * longest;
+        let tracks = || self.tracks.iter().skip(1).flatten().filter(leaping);
+        let lost: BTreeSet<usize> = tracks().flat_map(|t| spikes::leaps(&t.positions, &leap)).collect();
+        if lost.is_empty() || 2 * lost.len() > self.frames {
+            return;
+        }
+        let places = self.joints.iter_mut().zip(&mut self.tracks).zip(&self.offsets);
+        for ((joint, track), offset) in places.skip(1) {
+            if let Some(track) = track {
+                track.measure(*offset, &lost);
+                joint.offset = track.mean;
+            }
+        }
+        self.notes.push(format!(
+            "{} position channels below the root leap and come back: lost frames? No bone is measured by them.",
+            spikes::in_frames(&lost.into_iter().collect::<Vec<_>>())
+        ));
+    }
+
+    /// Position channels that hold 0 on most joints below the root mean the OFFSETs, or what is added to them: a body has bones.
     fn relative_positions(&mut self) {
         let tracked: Vec<usize> = (1..self.joints.len()).filter(|&j| self.tracks[j].is_some()).collect();
-        let zero = |t: &Option<Track>| t.as_ref().is_some_and(|t| t.positions.iter().all(|p| *p == Vector3::zeros()));
-        let shifted = |t: &Option<Track>| t.as_ref().is_some_and(|t| t.shift > 0.0);
-        if !tracked.iter().all(|&j| zero(&self.tracks[j])) || !tracked.iter().any(|&j| shifted(&self.tracks[j])) {
+        let empty = |t: &Track| t.mean == Vector3::zeros() && t.spread == 0.0;
+        let (mut boneless, mut other) = (0, 0);
+        for track in tracked.iter().filter_map(|&j| self.tracks[j].as_ref()) {
+            match empty(track) {
+                true => boneless += usize::from(track.shift > 0.0),
+                false => other += 1,
+            }
+        }
+        if boneless <= other {
             return;
         }
         for &joint in &tracked {
-            self.joints[joint].offset = self.offsets[joint];
-            self.tracks[joint] = None;
+            let offset = self.offsets[joint];
+            self.tracks[joint] = self.tracks[joint].take().filter(|t| !empty(t)).map(|t| t.beside(offset));
+            self.joints[joint].offset = self.tracks[joint].as_ref().map_or(offset, |t| t.mean);
         }
+        let kept = if other == 0 { "the OFFSETs are kept" } else { "all of them are added to the OFFSETs" };
         self.notes.push(format!(
-            "Position channels replace the OFFSET, and those of {} joints are 0 throughout, which would make bones of length 0: \
-             the OFFSETs are kept.",
-            tracked.len()
+            "Position channels replace the OFFSET, and those of {boneless} joints are 0 throughout, which would make bones of length 0: \
+             {kept}."
         ));
     }
 
@@ -104,6 +143,7 @@ impl Draft {
         }
         for track in self.tracks.iter_mut().flatten() {
             track.positions.iter_mut().for_each(|p| *p *= factor);
+            track.mean *= factor;
             track.spread *= factor;
             track.shift *= factor;
         }
@@ -153,16 +193,25 @@ impl Track {
         if positions.is_empty() {
             return None;
         }
-        let mut track = Track { positions, spread: 0.0, shift: 0.0 };
-        let mean = track.mean();
-        track.spread = track.positions.iter().map(|p| (p - mean).norm()).fold(0.0, f64::max);
-        track.shift = (mean - offset).norm();
+        let mut track = Track { positions, mean: Vector3::zeros(), spread: 0.0, shift: 0.0 };
+        track.measure(offset, &BTreeSet::new());
         Some(track)
     }
 
-    fn mean(&self) -> Vector3<f64> {
+    /// Mean, spread and shift over all frames but these.
+    fn measure(&mut self, offset: Vector3<f64>, lost: &BTreeSet<usize>) {
+        let kept = || self.positions.iter().enumerate().filter(|(f, _)| !lost.contains(f)).map(|(_, p)| *p);
         // Differences from the first keep a constant track exact to the last bit.
-        let first = self.positions[0];
-        first + self.positions.iter().map(|p| p - first).sum::<Vector3<f64>>() / self.positions.len() as f64
+        let first = kept().next().unwrap_or(offset);
+        let count = self.positions.len() - lost.len();
+        let mean = first + kept().map(|p| p - first).sum::<Vector3<f64>>() / count.max(1) as f64;
+        let spread = kept().map(|p| (p - mean).norm()).fold(0.0, f64::max);
+        (self.mean, self.spread, self.shift) = (mean, spread, (mean - offset).norm());
+    }
+
+    /// The same motion about another place.
+    fn beside(self, offset: Vector3<f64>) -> Track {
+        let positions = self.positions.into_iter().map(|p| p + offset).collect();
+        Track { positions, mean: self.mean + offset, spread: self.spread, shift: self.mean.norm() }
     }
 }

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 
 use super::cursor::Cursor;
 use super::fault::BvhFault;
+use super::motion::unglued;
 
 /// One motion channel of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,26 +46,30 @@ fn is_keyword(word: &str) -> bool {
 }
 
 /// Three numbers, no more and no fewer.
-pub(super) fn offset(cursor: &mut Cursor<'_>, line: usize, joint: &str) -> Result<Vector3<f64>, BvhFault> {
-    let (mut values, mut found) = ([0.0; 3], 0);
+pub(super) fn offset(
+    cursor: &mut Cursor<'_>,
+    line: usize,
+    joint: &str,
+    notes: &mut Vec<String>,
+) -> Result<Vector3<f64>, BvhFault> {
+    let mut values = Vec::new();
     while let Some(word) = cursor.peek().filter(|w| !is_keyword(w)) {
-        match word.parse::<f64>() {
-            Ok(value) if value.is_finite() => {
-                if let Some(slot) = values.get_mut(found) {
-                    *slot = value;
-                }
+        match (word.parse::<f64>(), unglued(word)) {
+            (Ok(value), _) if value.is_finite() => values.push(value),
+            _ if values.len() >= 3 => break, // Not ours: the joint's next line.
+            (_, Some(numbers)) => {
+                values.extend(numbers);
+                notes.push(format!("Line {line}: OFFSET of '{joint}': '{word}' was taken apart."));
             }
-            _ if found >= 3 => break, // Not ours: the joint's next line.
             _ => {
                 return Err(BvhFault::OffsetNumber { line, joint: joint.into(), found: word.into() });
             }
         }
-        found += 1;
         cursor.word();
     }
-    match found {
-        3 => Ok(Vector3::from(values)),
-        _ => Err(BvhFault::OffsetCount { line, joint: joint.into(), found }),
+    match values[..] {
+        [x, y, z] => Ok(Vector3::new(x, y, z)),
+        _ => Err(BvhFault::OffsetCount { line, joint: joint.into(), found: values.len() }),
     }
 }
 
@@ -97,7 +102,11 @@ pub(super) fn channels(cursor: &mut Cursor<'_>, line: usize, joint: &str) -> Res
 
 /// `Site { OFFSET x y z }`, and how many channels it announces; the word after End is not looked at, some files give the tip a
 /// name.
-pub(super) fn end_site(cursor: &mut Cursor<'_>, joint: &str) -> Result<(Vector3<f64>, usize), BvhFault> {
+pub(super) fn end_site(
+    cursor: &mut Cursor<'_>,
+    joint: &str,
+    notes: &mut Vec<String>,
+) -> Result<(Vector3<f64>, usize), BvhFault> {
     let broken = |cursor: &Cursor<'_>, found: Option<&str>| BvhFault::BrokenEndSite {
         line: cursor.line(),
         joint: joint.into(),
@@ -111,7 +120,7 @@ pub(super) fn end_site(cursor: &mut Cursor<'_>, joint: &str) -> Result<(Vector3<
         }
     }
     let name = format!("{joint} (End Site)");
-    let tip = offset(cursor, cursor.line(), &name)?;
+    let tip = offset(cursor, cursor.line(), &name, notes)?;
     let mut unused = 0;
     if cursor.peek().is_some_and(|w| w.eq_ignore_ascii_case("CHANNELS")) {
         cursor.word();

@@ -7,22 +7,41 @@ use crate::clip::map::{Canonical, JointMap};
 const STILL_ANGLE: f64 = 1e-3;
 
 impl Draft {
-    /// The first joint that travels: the root, or the last of a chain below a resting root.
-    fn carrier(&self) -> usize {
+    /// How deep the joint is that carries the body of unknown names: what few joints there are beside it are left out. The root where
+    /// something above it moves too.
+    fn carried(&mut self) -> usize {
         let moves = |t: &Option<Track>| t.as_ref().is_some_and(|t| t.spread > STILL);
-        self.tracks.iter().position(moves).filter(|&i| self.is_lone_chain(i)).unwrap_or(0)
+        let n = self.joints.len();
+        let most = |j: &usize| {
+            let (below, chain) = self.around(*j);
+            let whole = 4 * below.iter().filter(|b| **b).count() >= 3 * (n - (chain.len() - 1));
+            // What is longer than a target with its pole is a limb.
+            let near = |j: usize| self.joints[j].parent.is_none_or(|p| chain.contains(&p));
+            whole && (0..n).filter(|&j| !below[j]).all(|j| near(j) || self.joints[j].parent.is_some_and(near))
+        };
+        let Some(carrier) = (0..n).filter(|&j| moves(&self.tracks[j])).find(most) else { return 0 };
+        let (below, chain) = self.around(carrier);
+        if !chain[1..].iter().all(|&j| self.is_still(j)) {
+            return 0;
+        }
+        let keep: Vec<bool> = (0..n).map(|j| below[j] || chain.contains(&j)).collect();
+        let what = format!("'{}', which carries the body,", self.joints[carrier].name);
+        self.leave_out(&keep, &what);
+        chain.len() - 1
     }
 
-    /// Whether everything hangs on `joint`: each joint above it has one child.
-    fn is_lone_chain(&self, joint: usize) -> bool {
-        (1..=joint).all(|i| self.joints[i].parent == Some(i - 1))
-            && (0..joint).all(|i| self.joints.iter().filter(|j| j.parent == Some(i)).count() == 1)
+    /// Which joints hang on `joint`, itself included; and the way from it to the root, both included.
+    fn around(&self, joint: usize) -> (Vec<bool>, Vec<usize>) {
+        let chain = std::iter::successors(Some(joint), |&j| self.joints[j].parent).collect();
+        let mut below = vec![false; self.joints.len()];
+        for j in 0..self.joints.len() {
+            below[j] = j == joint || self.joints[j].parent.is_some_and(|p| below[p]);
+        }
+        (below, chain)
     }
 
     /// Makes the joint that travels, or the pelvis, the root; see the [module's text](super).
     pub fn fold_root(&mut self, map: Option<&JointMap>) {
-        let carrier = self.carrier();
-        let still_above = (0..carrier).all(|i| self.is_still(i));
         let target = match map.and_then(|m| Some((m, m.joint(Canonical::Pelvis)?))) {
             Some((map, pelvis)) => {
                 let Some(depth) = self.lone(pelvis, map) else {
@@ -34,8 +53,7 @@ impl Draft {
                 };
                 depth
             }
-            None if still_above => carrier,
-            None => 0,
+            None => self.carried(),
         };
         for _ in 0..target {
             let (above, still) = (self.joints[0].name.clone(), self.is_still(0));
@@ -48,23 +66,16 @@ impl Draft {
     /// How deep the pelvis is, once the joints beside it that are no part of the body are left out (targets of inverse kinematics,
     /// cameras, props); none where the body hangs on several of them.
     fn lone(&mut self, pelvis: usize, map: &JointMap) -> Option<usize> {
-        let mut chain = vec![pelvis];
-        while let Some(parent) = chain.last().and_then(|&j| self.joints[j].parent) {
-            chain.push(parent);
-        }
-        let mut below = vec![false; self.joints.len()];
-        for j in 0..self.joints.len() {
-            below[j] = j == pelvis || self.joints[j].parent.is_some_and(|p| below[p]);
-        }
+        let (below, chain) = self.around(pelvis);
         let keep: Vec<bool> = (0..self.joints.len()).map(|j| below[j] || chain.contains(&j)).collect();
         if Canonical::ALL.iter().filter_map(|&c| map.joint(c)).any(|j| !keep[j]) {
             return None;
         }
-        self.leave_out(&keep);
+        self.leave_out(&keep, "the pelvis");
         Some(chain.len() - 1)
     }
 
-    fn leave_out(&mut self, keep: &[bool]) {
+    fn leave_out(&mut self, keep: &[bool], beside: &str) {
         if keep.iter().all(|&k| k) {
             return;
         }
@@ -72,7 +83,7 @@ impl Draft {
             self.joints.iter().zip(keep).filter(|(_, k)| !**k).map(|(j, _)| j.name.as_str()).collect();
         let shown = left.iter().take(5).copied().collect::<Vec<_>>().join("', '");
         let more = if left.len() > 5 { ", ..." } else { "" };
-        self.notes.push(format!("{} joint(s) beside the pelvis are left out: '{shown}'{more}.", left.len()));
+        self.notes.push(format!("{} joint(s) beside {beside} are left out: '{shown}'{more}.", left.len()));
         let mut columns = keep.iter().cycle();
         self.rotations.retain(|_| columns.next() == Some(&true));
         let index: Vec<usize> = (0..keep.len()).map(|j| keep[..j].iter().filter(|k| **k).count()).collect();

@@ -41,6 +41,8 @@ pub(super) fn parse(cursor: &mut Cursor<'_>) -> Result<Hierarchy, BvhFault> {
     let mut notes = Vec::new();
     loop {
         figure(cursor, &mut joints, &mut names, &mut notes)?;
+        // Figures of one kind have joints of the same names; their roots are told apart, since one is chosen by name.
+        names.retain(|name, _| joints.iter().any(|j| j.parent.is_none() && j.name == *name));
         match cursor.word() {
             Some(word) if word.eq_ignore_ascii_case("MOTION") => return Ok(Hierarchy { joints, notes }),
             Some(word) if word.eq_ignore_ascii_case("ROOT") => {}
@@ -78,7 +80,7 @@ fn figure(
             }
             "OFFSET" => {
                 top.offset = true;
-                joints[joint].offset = fields::offset(cursor, line, &joints[joint].name)?;
+                joints[joint].offset = fields::offset(cursor, line, &joints[joint].name, notes)?;
             }
             "CHANNELS" if top.channels => {
                 return Err(BvhFault::SecondChannels { line, joint: name() });
@@ -89,7 +91,7 @@ fn figure(
             }
             "JOINT" => open_joint(cursor, "JOINT", joints, names, &mut open, notes)?,
             "END" | "ENDSITE" => {
-                let (tip, unused) = fields::end_site(cursor, &joints[joint].name)?;
+                let (tip, unused) = fields::end_site(cursor, &joints[joint].name, notes)?;
                 if unused > 0 {
                     notes.push(format!("The End Site of '{}' has channels, which are left out.", joints[joint].name));
                 }

@@ -26,10 +26,10 @@ pub(super) mod orient;
 mod plain;
 mod rows;
 mod select;
-mod spikes;
+pub(super) mod spikes;
 #[cfg(test)]
 mod tests;
-mod text;
+pub(super) mod text;
 pub mod write;
 
 use std::io::Read;

@@ -25,8 +25,15 @@ pub(super) struct Header {
 
 /// Reads from after the keyword MOTION to the first frame.
 pub(super) fn header(cursor: &mut Cursor<'_>) -> Result<Header, BvhFault> {
-    let (line, frames) = frame_count(cursor)?;
-    Ok(Header { line, frames, frame_time: frame_time(cursor)? })
+    let (mut line, mut frames) = frame_count(cursor)?;
+    let frame_time = frame_time(cursor)?;
+    let before = *cursor;
+    // The two lines may stand the other way round.
+    match cursor.full_line().and_then(|(at, text)| Some((at, after_keys(text, &["frames"])?))) {
+        Some((at, value)) if frames.is_none() => (line, frames) = counted(at, value)?,
+        _ => *cursor = before,
+    }
+    Ok(Header { line, frames, frame_time })
 }
 
 impl Header {
@@ -69,25 +76,20 @@ pub(super) fn parse(mut cursor: Cursor<'_>, joints: &[RawJoint], notes: &mut Vec
         let start_of_line = values.len();
         for word in text.split_ascii_whitespace() {
             let value = values.len() - start_of_line;
-            match word.parse::<f64>() {
-                Ok(number) if number.is_finite() => values.push(number),
-                parsed if value < channels => match unglued(word) {
-                    Some(numbers) => {
-                        glued += 1;
-                        values.extend(numbers);
-                    }
-                    None => return Err(bad_value(joints, line, frames, value, word, parsed.is_ok())),
-                },
-                _ => values.push(0.0), // Beyond the last channel: the count is the fault to report.
+            match push(word, &mut values) {
+                Some(more) => glued += more,
+                None if value < channels => return Err(bad_value(joints, line, frames, value, word)),
+                None => values.push(0.0), // Beyond the last channel: the count is the fault to report.
             }
         }
         let found = values.len() - start_of_line;
         if found != channels {
             let last = cursor.at_end();
             let fault = BvhFault::ValueCount { line, frame: frames, found, expected: channels, last };
-            let values = wrapped(start, channels, declared).ok_or(fault)?;
+            (values, glued) = wrapped(start, channels, declared).ok_or(fault)?;
             notes.push("Frames are broken over several lines: cut by the number of channels.".into());
-            return Ok(Motion { frame_time, values });
+            frames = values.len() / channels;
+            break;
         }
     }
     header.check(frames, cursor.line(), notes)?;
@@ -97,20 +99,34 @@ pub(super) fn parse(mut cursor: Cursor<'_>, joints: &[RawJoint], notes: &mut Vec
     Ok(Motion { frame_time, values })
 }
 
-/// All numbers of the motion in one row, where they make whole frames, as many as were declared.
-fn wrapped(mut cursor: Cursor<'_>, channels: usize, declared: Option<usize>) -> Option<Vec<f64>> {
-    let mut values = Vec::new();
+/// All numbers of the motion in one row, and how many words were taken apart: where they make whole frames, as many as were declared.
+/// Where the count is off by one, or missing, every frame must begin a line too: else numbers may be missing here and there.
+fn wrapped(mut cursor: Cursor<'_>, channels: usize, declared: Option<usize>) -> Option<(Vec<f64>, usize)> {
+    let (mut values, mut glued, mut by_lines) = (Vec::new(), 0, true);
     while let Some((_, text)) = cursor.full_line() {
+        let before = values.len();
         for word in text.split_ascii_whitespace() {
-            values.push(word.parse::<f64>().ok().filter(|x| x.is_finite())?);
+            glued += push(word, &mut values)?;
         }
+        by_lines &= (values.len() - 1) / channels == before / channels;
     }
-    let whole = values.len().is_multiple_of(channels) && declared == Some(values.len() / channels);
-    whole.then_some(values)
+    let frames = values.len() / channels;
+    let counted = declared == Some(frames) || by_lines && declared.is_none_or(|n| n.abs_diff(frames) == 1);
+    (values.len().is_multiple_of(channels) && counted).then_some((values, glued))
+}
+
+/// Adds the number of a word, or its numbers, and says whether it had to be taken apart; none where it is no finite number.
+fn push(word: &str, values: &mut Vec<f64>) -> Option<usize> {
+    if let Some(number) = word.parse::<f64>().ok().filter(|x| x.is_finite()) {
+        values.push(number);
+        return Some(0);
+    }
+    values.extend(unglued(word)?);
+    Some(1)
 }
 
 /// The numbers of a word like `1.5-2.5`: fixed columns leave no blank before a minus sign.
-fn unglued(word: &str) -> Option<Vec<f64>> {
+pub(super) fn unglued(word: &str) -> Option<Vec<f64>> {
     let mut numbers = Vec::new();
     let (mut start, mut before) = (0, b'-');
     for (at, byte) in word.bytes().enumerate() {
@@ -124,11 +140,11 @@ fn unglued(word: &str) -> Option<Vec<f64>> {
     (numbers.len() > 1 && numbers.iter().all(|x: &f64| x.is_finite())).then_some(numbers)
 }
 
-fn bad_value(joints: &[RawJoint], line: usize, frame: usize, index: usize, word: &str, number: bool) -> BvhFault {
+fn bad_value(joints: &[RawJoint], line: usize, frame: usize, index: usize, word: &str) -> BvhFault {
     let mut all = joints.iter().flat_map(|j| j.channels.iter().map(move |c| (j.name.clone(), c.name())));
     let (joint, channel) = all.nth(index).unwrap_or_default();
     let (value, found) = (index + 1, word.chars().take(40).collect());
-    match number {
+    match word.parse::<f64>().is_ok() {
         true => BvhFault::NotFinite { line, frame, value, joint, channel, found },
         false => BvhFault::Value { line, frame, value, joint, channel, found },
     }
@@ -145,9 +161,14 @@ fn frame_count(cursor: &mut Cursor<'_>) -> Result<(usize, Option<usize>), BvhFau
     let Some(value) = after_keys(text, &["frames"]) else {
         return Err(BvhFault::MissingFrames { line, found: short(text) });
     };
+    counted(line, value)
+}
+
+/// The number of frames on a line; none where nothing stands there, or 0.
+fn counted(line: usize, value: &str) -> Result<(usize, Option<usize>), BvhFault> {
     match value.parse::<usize>() {
-        Ok(0) => Ok((line, None)),
-        Ok(n) => Ok((line, Some(n))),
+        Ok(n) => Ok((line, Some(n).filter(|n| *n > 0))),
+        _ if value.is_empty() => Ok((line, None)),
         _ => Err(BvhFault::FrameCount { line, found: short(value) }),
     }
 }

@@ -41,23 +41,43 @@ pub(crate) fn turn(clip: &mut Clip, map: Option<&JointMap>, options: &ReadOption
 fn decide(clip: &mut Clip, map: Option<&JointMap>, rest: Vector3<f64>, motion: Vector3<f64>) {
     let percent = |v: Vector3<f64>, up: UpAxis| 100.0 * v.dot(&up.direction());
     let along = |v: &Vector3<f64>, least: f64| UpAxis::ALL.into_iter().find(|up| v.dot(&up.direction()) > least);
-    match (along(&rest, 0.9), along(&motion, 0.7)) {
+    let stands = |up: &UpAxis| map.is_some_and(|m| stands_on(clip, m, *up));
+    let feet = UpAxis::ALL.into_iter().find(stands).filter(|_| !stands(&UpAxis::Y));
+    let name = |up: UpAxis| up.to_string().to_uppercase();
+    let (at_rest, moving) = (along(&rest, 0.9), along(&motion, 0.7));
+    // Who bends points anywhere, and stands on the feet all the same.
+    if let Some(up) = feet.filter(|up| moving != Some(*up)) {
+        let whole = at_rest == Some(up);
+        // Who sits with stretched legs points anywhere too, on a floor along Y.
+        if !whole && (at_rest != Some(UpAxis::Y) || lies_on_y(clip)) {
+            clip.notes.push(format!(
+                "Y up assumed, though the feet stand at 0 along {up}: if the file is {up} up, say so: `--up {up}`."
+            ));
+            return;
+        }
+        turn_by(clip, up, whole);
+        let rest = if whole { "" } else { " (the motion; the rest pose is Y up already)" };
+        let up = name(up);
+        clip.notes.push(format!("{up} up found (the feet stand at 0 there, the body bends): turned to Y up{rest}."));
+        return;
+    }
+    match (at_rest, moving) {
         (Some(up), Some(other)) if up == other && up != UpAxis::Y => {
             turn_by(clip, up, true);
             clip.notes.push(format!(
                 "{} up found (from ankles to head, the rest pose points {:.0} % along {up}, the motion {:.0} %): turned to Y up.",
-                up.to_string().to_uppercase(),
+                name(up),
                 percent(rest, up),
                 percent(motion, up)
             ));
         }
         (Some(UpAxis::Y), Some(up)) if up != UpAxis::Y && percent(motion, up) > 80.0 => {
-            if map.is_some_and(|m| stands_on(clip, m, up)) {
+            if feet == Some(up) {
                 turn_by(clip, up, false);
                 clip.notes.push(format!(
                     "{} up found in the motion (the body points {:.0} % along {up} and its feet stand at 0 there), Y up at rest: the \
                      motion was turned to Y up.",
-                    up.to_string().to_uppercase(),
+                    name(up),
                     percent(motion, up)
                 ));
             } else {
@@ -83,7 +103,7 @@ fn stands_on(clip: &Clip, map: &JointMap, up: UpAxis) -> bool {
     let feet = [Canonical::LAnkle, Canonical::RAnkle].map(|c| map.joint(c));
     let ([Some(left), Some(right)], Some(pelvis)) = (feet, map.joint(Canonical::Pelvis)) else { return false };
     let rest = clip.skeleton.rest_positions();
-    let leg = rest[pelvis].y - rest[left].y.min(rest[right].y);
+    let leg = (rest[pelvis] - rest[left]).norm().max((rest[pelvis] - rest[right]).norm());
     let frames: Vec<usize> = (0..clip.frames()).step_by(clip.frames().div_ceil(SAMPLES).max(1)).collect();
     let stands = |f: &&usize| {
         let p = clip.positions(**f);
@@ -92,6 +112,13 @@ fn stands_on(clip: &Clip, map: &JointMap, up: UpAxis) -> bool {
         (-0.1 * leg..0.35 * leg).contains(&low) && (0.6 * leg..1.5 * leg).contains(&height(pelvis))
     };
     10 * frames.iter().filter(stands).count() >= 9 * frames.len()
+}
+
+/// Whether the lowest joint is at a height near zero in most frames.
+fn lies_on_y(clip: &Clip) -> bool {
+    let frames: Vec<usize> = (0..clip.frames()).step_by(clip.frames().div_ceil(SAMPLES).max(1)).collect();
+    let low = |f: usize| clip.positions(f).iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
+    10 * frames.iter().filter(|f| low(**f).abs() < FLOOR).count() >= 9 * frames.len()
 }
 
 /// Mean direction from the ankles to the head: in the rest pose, and over the motion.

@@ -10,14 +10,20 @@ pub(super) fn decode<'a>(bytes: &'a [u8], notes: &mut Vec<String>) -> Result<Cow
     if let Some(rest) = text.strip_prefix('\u{feff}') {
         text = Cow::Owned(rest.to_owned());
     }
-    if text.contains('\r') && !text.contains('\n') {
+    if has_lone_return(&text) {
         notes.push("Lines end in CR alone.".into());
-        text = Cow::Owned(text.replace('\r', "\n"));
+        text = Cow::Owned(text.replace("\r\n", "\n").replace('\r', "\n"));
     }
     if text.contains(',') {
         text = commas(&text, notes).map_or(text, Cow::Owned);
     }
     Ok(text)
+}
+
+/// Whether a CR is a line end of its own: also in files whose other part, or last line, was written elsewhere.
+fn has_lone_return(text: &str) -> bool {
+    let bytes = text.as_bytes();
+    text.match_indices('\r').any(|(at, _)| bytes.get(at + 1).is_some_and(|next| *next != b'\n'))
 }
 
 fn characters<'a>(bytes: &'a [u8], notes: &mut Vec<String>) -> Result<Cow<'a, str>, BvhFault> {
@@ -48,13 +54,35 @@ fn characters<'a>(bytes: &'a [u8], notes: &mut Vec<String>) -> Result<Cow<'a, st
                 "The joint names are not UTF-8 (Shift-JIS or another encoding): each such byte is kept as one character."
                     .into(),
             );
-            Ok(Cow::Owned(bytes.iter().map(|&b| char::from(b)).collect()))
+            Ok(Cow::Owned(byte_by_byte(bytes)))
         }
     }
 }
 
+/// Each byte as one character. In names of two bytes a character the second may be that of a brace (in Shift-JIS "bo" ends so): it
+/// becomes a wide brace. Of the encodings, the first in which braces balance then.
+fn byte_by_byte(bytes: &[u8]) -> String {
+    let leads: [fn(u8) -> bool; 3] =
+        [|b| matches!(b, 0x81..=0x9f | 0xe0..=0xfc), |b| matches!(b, 0x81..=0xfe), |_| false];
+    let read = |lead: fn(u8) -> bool| {
+        let mut second = false;
+        let character = |&b: &u8| {
+            let inside = second;
+            second = !inside && lead(b);
+            match (inside, b) {
+                (true, b'{') => '\u{ff5b}',
+                (true, b'}') => '\u{ff5d}',
+                _ => char::from(b),
+            }
+        };
+        bytes.iter().map(character).collect::<String>()
+    };
+    let balanced = |text: &String| text.matches('{').count() == text.matches('}').count();
+    leads.into_iter().map(read).find(balanced).unwrap_or_else(|| read(|_| false))
+}
+
 /// Text of two bytes a character: with a byte-order mark, or every second byte zero at the start.
-fn utf16(bytes: &[u8]) -> Option<String> {
+pub(in crate::clip) fn utf16(bytes: &[u8]) -> Option<String> {
     let (little, bytes) = match bytes {
         [0xff, 0xfe, rest @ ..] => (true, rest),
         [0xfe, 0xff, rest @ ..] => (false, rest),
@@ -82,7 +110,9 @@ fn commas(text: &str, notes: &mut Vec<String>) -> Option<String> {
     };
     let mut lines = text.lines().filter(|line| numbers(line)).peekable();
     lines.peek()?;
-    let decimal = !lines.any(|line| line.contains('.') || line.contains(", ") || line.trim_end().ends_with(','));
+    let listed = |line: &str| line.split_ascii_whitespace().any(|word| word.matches(',').count() > 1);
+    let decimal =
+        !lines.any(|line| line.contains('.') || line.contains(", ") || line.trim_end().ends_with(',') || listed(line));
     let (to, note) = match decimal {
         true => (".", "Numbers have decimal commas."),
         false => (" ", "Commas stand between the numbers."),

@@ -35,12 +35,17 @@ pub enum KinectFault {
     )]
     NeverTracked { joint: &'static str },
     #[error(
-        "the unit of length cannot be told: a leg (hip to ankle) of {leg:.4} units fits a human size in none of m, cm, mm. Say which \
+        "the unit of length cannot be told: a leg (hip to ankle) of {leg:.4} units fits a human size in none of m, foot, dm, cm, mm. Say which \
              it is (`--units cm`)"
     )]
     UnknownUnits { leg: f64 },
     #[error("only {found} frame(s) with different timestamps, expected at least 2")]
     TooShort { found: usize },
+    #[error(
+        "the column of time counts {seconds:.4} s over {rows} rows, which is one frame at {fps} fps: it counts in another unit. Write \
+             milliseconds or seconds into it"
+    )]
+    TooFast { rows: usize, seconds: f64, fps: f64 },
     #[error("the frame rate to resample to is {found}, expected a number from 1 to 1000")]
     Rate { found: f64 },
     #[error(

@@ -15,6 +15,7 @@ mod sense;
 mod table;
 
 pub use fault::KinectFault;
+pub(super) use table::is_header;
 
 use nalgebra::Vector3;
 use std::path::Path;
@@ -69,11 +70,13 @@ pub struct KinectOptions {
     pub up: Option<UpAxis>,
     /// The axes are left-handed: X is turned round.
     pub left_handed: bool,
+    /// Bridge joints that leap and come back.
+    pub repair: bool,
 }
 
 impl Default for KinectOptions {
     fn default() -> Self {
-        KinectOptions { fps: 30.0, max_gap: 0.25, units: None, up: None, left_handed: false }
+        KinectOptions { fps: 30.0, max_gap: 0.25, units: None, up: None, left_handed: false, repair: false }
     }
 }
 
@@ -100,6 +103,7 @@ pub(super) fn read(bytes: &[u8], path: &Path, options: &ReadOptions) -> Result<C
         units: options.units.or(options.kinect.units),
         up: options.up.or(options.kinect.up),
         left_handed: options.left_handed || options.kinect.left_handed,
+        repair: options.repair || options.kinect.repair,
         ..options.kinect.clone()
     };
     let recording = parse(bytes, &own).map_err(|fault| ReadError::Kinect { path: path.into(), fault })?;
@@ -118,6 +122,13 @@ pub fn parse(bytes: &[u8], options: &KinectOptions) -> Result<Recording, KinectF
     let mut notes = std::mem::take(&mut table.notes);
     if table.repeated > 0 {
         notes.push(format!("{} row(s) that repeat a timestamp were dropped.", table.repeated));
+    }
+    if table.elsewhere > 0 {
+        notes.push(format!(
+            "In {} of them the body is elsewhere: several people? The first row of each timestamp is read; a column BodyId tells them \
+             apart.",
+            table.elsewhere
+        ));
     }
     let duration = table.times.last().copied().unwrap_or(0.0);
     if table.rows.len() < 2 {
@@ -146,7 +157,11 @@ pub fn parse(bytes: &[u8], options: &KinectOptions) -> Result<Recording, KinectF
     ));
 
     let mut frames = even_clock(&table, options.fps);
+    if frames.len() < 2 {
+        return Err(KinectFault::TooFast { rows: table.rows.len(), seconds: duration, fps: options.fps });
+    }
     sense::units(&mut frames, options.units, &mut notes)?;
+    sense::leaps(&mut frames, options, &mut notes);
     sense::axes(&mut frames, options, &mut notes);
     notes.push(to_world(&mut frames));
     if let Some(note) = sides(&frames) {

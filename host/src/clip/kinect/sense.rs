@@ -4,19 +4,16 @@ use nalgebra::Vector3;
 
 use super::table::Table;
 use super::{JOINTS, KinectFault, KinectOptions, Skeleton20};
+use crate::clip::bvh::spikes::{self, Leap};
 use crate::clip::{Unit, UpAxis};
 
 /// Joints at 0, 0, 0 are in the lens: what recorders write for a joint that they do not see. Refuses a joint that was never seen.
 pub(super) fn untracked(table: &mut Table, notes: &mut Vec<String>) -> Result<(), KinectFault> {
     let mut rows = vec![false; table.rows.len()];
-    for joint in 0..JOINTS.len() {
-        let zero = |row: &Skeleton20| row[joint] == Vector3::zeros();
-        // A joint that is always there is the origin of the coordinates.
-        if table.rows.iter().all(zero) {
-            continue;
-        }
+    let origin = origin(&table.rows);
+    for joint in (0..JOINTS.len()).filter(|joint| origin != Some(*joint)) {
         for (row, touched) in table.rows.iter_mut().zip(&mut rows) {
-            if zero(row) {
+            if row[joint] == Vector3::zeros() {
                 row[joint] = Vector3::repeat(f64::NAN);
                 *touched = true;
             }
@@ -32,6 +29,51 @@ pub(super) fn untracked(table: &mut Table, notes: &mut Vec<String>) -> Result<()
         }
     }
     Ok(())
+}
+
+/// The joint that is the origin of the coordinates: always there, and within a body's reach of its neighbour, as a joint that was never
+/// tracked is not.
+fn origin(rows: &[Skeleton20]) -> Option<usize> {
+    let is_zero = |joint: usize| rows.iter().all(|row| row[joint] == Vector3::zeros());
+    let bone = |a: usize, b: usize| {
+        let mut lengths: Vec<f64> = rows.iter().map(|row| (row[a] - row[b]).norm()).filter(|x| x.is_finite()).collect();
+        lengths.sort_by(f64::total_cmp);
+        lengths.get(lengths.len() / 2).copied().unwrap_or(0.0)
+    };
+    let sound = JOINTS.iter().enumerate().filter_map(|(joint, (_, parent))| Some((joint, (*parent)?)));
+    let longest = sound.filter(|(a, b)| !is_zero(*a) && !is_zero(*b)).map(|(a, b)| bone(a, b)).fold(0.0, f64::max);
+    let near = |joint: &usize| bone(*joint, JOINTS[*joint].1.unwrap_or(1)) <= 2.0 * longest;
+    (0..JOINTS.len()).filter(|joint| is_zero(*joint)).find(near)
+}
+
+/// Names joints that leap faster than anybody moves, and back, m; with `repair`, lays straight lines over them.
+pub(super) fn leaps(frames: &mut [Skeleton20], options: &KinectOptions, notes: &mut Vec<String>) {
+    let second = (options.max_gap * options.fps).ceil().clamp(2.0, 1e6) as usize;
+    let leap = Leap { second, ..Leap::of(1.0 / options.fps, frames.len()) };
+    let mut found: Vec<(usize, Vec<usize>)> = Vec::new();
+    for joint in 0..JOINTS.len() {
+        let path: Vec<Vector3<f64>> = frames.iter().map(|f| f[joint]).collect();
+        let lost = spikes::leaps(&path, &leap);
+        let good = |f: &usize| lost.binary_search(f).is_err();
+        for &frame in lost.iter().filter(|_| options.repair) {
+            let (before, after) = ((0..frame).rev().find(good), (frame + 1..path.len()).find(good));
+            let (Some(a), Some(b)) = (before.or(after), after.or(before)) else { continue };
+            let part = if b > a { (frame - a) as f64 / (b - a) as f64 } else { 0.0 };
+            frames[frame][joint] = path[a].lerp(&path[b], part);
+        }
+        if !lost.is_empty() {
+            found.push((joint, lost));
+        }
+    }
+    let Some((joint, lost)) = found.iter().rev().max_by_key(|(_, lost)| lost.len()) else { return };
+    let done =
+        if options.repair { "bridged by straight lines, as given" } else { "left as they are; --repair bridges them" };
+    notes.push(format!(
+        "{} '{}' leaps faster than anybody moves, and back ({} joint(s) do so): lost frames? They are {done}.",
+        spikes::in_frames(lost),
+        JOINTS[*joint].0,
+        found.len()
+    ));
 }
 
 /// Scales to metres: as given, or by the length of the legs.
@@ -57,6 +99,8 @@ pub(super) fn units(
         // Small children, and legs that the sensor sees short.
         None => match leg {
             l if (0.15..2.0).contains(&l) => Unit::Metre,
+            l if (2.0..4.4).contains(&l) => Unit::Foot,
+            l if (4.4..15.0).contains(&l) => Unit::Decimetre,
             l if (15.0..150.0).contains(&l) => Unit::Centimetre,
             l if (150.0..2000.0).contains(&l) => Unit::Millimetre,
             // A body without legs is no body: the fit says so.
@@ -66,6 +110,7 @@ pub(super) fn units(
     };
     if given.is_none() && unit != Unit::Metre {
         notes.push(format!("Units: {unit} assumed: a leg (hip to ankle) of {leg:.1} units."));
+        notes.extend(unit.uncertain(leg));
     }
     frames.iter_mut().flatten().for_each(|p| *p *= unit.metres());
     Ok(())

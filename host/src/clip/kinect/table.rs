@@ -3,8 +3,11 @@
 use nalgebra::Vector3;
 
 use super::{JOINTS, KinectFault, Skeleton20};
+use crate::cells::{plain, reader};
+use crate::clip::bvh::text::utf16;
 
 /// The rows of a recording, in file order. Missing numbers are NaN.
+#[derive(Default)]
 pub(super) struct Table {
     /// Line in the file of each row.
     pub lines: Vec<u64>,
@@ -14,40 +17,67 @@ pub(super) struct Table {
     pub rows: Vec<Skeleton20>,
     /// Rows dropped because their timestamp was that of the row before.
     pub repeated: usize,
+    /// Of these, rows in which the body is at another place.
+    pub elsewhere: usize,
     /// What was made of the clock and of several people.
     pub notes: Vec<String>,
 }
 
+/// Other names of the joints of the trunk: the second Kinect's, then Azure's.
+const ALIASES: [(&str, &[&str]); 3] = [
+    ("hipcenter", &["spinebase", "pelvis"]),
+    ("spine", &["spinemid", "spinenavel"]),
+    ("shouldercenter", &["spineshoulder", "neck"]),
+];
+/// Columns of time, and of who it is.
+const CLOCKS: [&str; 6] = ["timestamp", "time", "timestampms", "timems", "frame", "framenumber"];
+const PEOPLE: [&str; 10] =
+    ["bodyid", "bodyindex", "body", "trackingid", "personid", "person", "userid", "skeletonid", "playerid", "player"];
+
+/// Whether a line names the columns of such a table.
+pub(in crate::clip) fn is_header(line: &str) -> bool {
+    let line = plain(line);
+    ALIASES[..1].iter().any(|(name, others)| {
+        std::iter::once(name).chain(*others).any(|name| line.contains(&format!("{name}x")))
+            && line.contains("kneeleftx")
+    })
+}
+
 pub(super) fn read(bytes: &[u8]) -> Result<Table, KinectFault> {
+    let wide = utf16(bytes);
+    let bytes = wide.as_ref().map_or(bytes, |text| text.trim_start_matches('\u{feff}').as_bytes());
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     if bytes.trim_ascii().is_empty() {
         return Err(KinectFault::Empty);
     }
-    let mut reader = csv::ReaderBuilder::new().flexible(true).trim(csv::Trim::All).from_reader(bytes);
+    let (separator, mut reader) = reader(bytes);
     let broken = |e: csv::Error| KinectFault::Csv { line: e.position().map_or(1, |p| p.line()), error: e.to_string() };
     let header = reader.headers().map_err(broken)?.clone();
-    let find = |column: String| match header.iter().position(|h| h.eq_ignore_ascii_case(&column)) {
-        Some(at) => Ok((at, column)),
-        None => Err(KinectFault::MissingColumn { column }),
-    };
-    const CLOCKS: [&str; 5] = ["Timestamp", "Time", "Timestamp_ms", "Frame", "FrameNumber"];
-    let time_column = CLOCKS
-        .iter()
-        .find_map(|name| find((*name).into()).ok())
-        .ok_or(KinectFault::MissingColumn { column: "Timestamp".into() })?;
-    const PEOPLE: [&str; 6] = ["BodyId", "Body", "TrackingId", "PersonId", "UserId", "SkeletonId"];
-    let body_column = PEOPLE.iter().find_map(|name| find((*name).into()).ok());
-    let body = body_column.as_ref().map(|(at, _)| commonest(bytes, *at));
+    let names: Vec<String> = header.iter().map(plain).collect();
+    let find = |name: &str| names.iter().position(|n| n == name);
+    let first = |all: &[&str]| all.iter().find_map(|name| find(name));
+    let time_at = first(&CLOCKS).ok_or(KinectFault::MissingColumn { column: "Timestamp".into() })?;
+    let time_column = (time_at, header.get(time_at).unwrap_or_default().to_owned());
+    let body_column = first(&PEOPLE);
+    let body = body_column.map(|at| commonest(bytes, at));
     let mut others = 0;
     let mut columns = Vec::with_capacity(3 * JOINTS.len());
     for (joint, _) in JOINTS {
+        let own = joint.to_lowercase();
+        let other = ALIASES.iter().find(|(name, _)| *name == own).map_or(&[][..], |(_, others)| others);
         for axis in ["X", "Y", "Z"] {
-            columns.push(find(format!("{joint}{axis}"))?);
+            let named = |name: &str| find(&format!("{name}{}", axis.to_lowercase()));
+            let column = format!("{joint}{axis}");
+            let at = named(&own).or_else(|| other.iter().find_map(|name| named(name)));
+            columns.push((at.ok_or_else(|| KinectFault::MissingColumn { column: column.clone() })?, column));
         }
     }
+    let number = |record: &csv::StringRecord, column: &(usize, String), line: u64| {
+        number(record, column, line, separator != b',')
+    };
     let expected = 1 + columns.iter().map(|c| c.0).max().unwrap_or(0).max(time_column.0);
 
-    let mut table = Table { lines: Vec::new(), times: Vec::new(), rows: Vec::new(), repeated: 0, notes: Vec::new() };
+    let mut table = Table::default();
     let (mut first, mut previous) = (None, f64::NEG_INFINITY);
     let mut record = csv::StringRecord::new();
     while reader.read_record(&mut record).map_err(broken)? {
@@ -55,8 +85,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<Table, KinectFault> {
         if record.len() < expected {
             return Err(KinectFault::ShortRow { line, found: record.len(), expected });
         }
-        if let (Some((at, _)), Some(body)) = (&body_column, &body)
-            && record.get(*at).unwrap_or_default() != body
+        if let (Some(at), Some(body)) = (body_column, &body)
+            && record.get(at).unwrap_or_default() != body
         {
             others += 1;
             continue;
@@ -69,17 +99,20 @@ pub(super) fn read(bytes: &[u8]) -> Result<Table, KinectFault> {
         if time < previous {
             return Err(KinectFault::Backward { line, found: time, previous });
         }
-        if time == previous {
-            table.repeated += 1;
-            continue;
-        }
-        previous = time;
         let mut row = [Vector3::zeros(); 20];
         for (position, columns) in row.iter_mut().zip(columns.chunks_exact(3)) {
             for (value, column) in position.iter_mut().zip(columns) {
                 *value = number(&record, column, line)?;
             }
         }
+        if let Some(known) = table.rows.last().filter(|_| time == previous) {
+            table.repeated += 1;
+            // Elsewhere by half a trunk: another person.
+            let trunk = (known[3] - known[0]).norm();
+            table.elsewhere += usize::from((known[0] - row[0]).norm() > trunk / 2.0);
+            continue;
+        }
+        previous = time;
         table.lines.push(line);
         table.times.push(time - *first.get_or_insert(time));
         table.rows.push(row);
@@ -97,7 +130,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Table, KinectFault> {
 
 /// The commonest value of a column, the first where two are as common.
 fn commonest(bytes: &[u8], column: usize) -> String {
-    let mut reader = csv::ReaderBuilder::new().flexible(true).trim(csv::Trim::All).from_reader(bytes);
+    let (_, mut reader) = reader(bytes);
     let mut counts: Vec<(String, usize)> = Vec::new();
     for record in reader.records().flatten() {
         let value = record.get(column).unwrap_or_default();
@@ -115,13 +148,15 @@ fn clock(times: &[f64], name: &str, notes: &mut Vec<String>) -> f64 {
     let mut steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
     steps.sort_by(f64::total_cmp);
     let Some(&step) = steps.get(steps.len() / 2) else { return 1e-3 };
-    let numbers = times.iter().all(|t| t.fract() == 0.0) && step <= 1.0;
+    // No sensor gives more than 250 rows a second.
+    let numbers = times.iter().all(|t| t.fract() == 0.0) && (step < 4.0 || plain(name).starts_with("frame"));
     let (seconds, what) = match step {
         _ if numbers => (1.0 / 30.0, "frame numbers, 30 of them a second assumed"),
         s if s < 1.0 => (1.0, "seconds"),
         s if s < 5000.0 => (1e-3, ""),
         s if s < 150_000.0 => (1e-6, "microseconds"),
-        _ => (1e-7, "units of 100 ns"),
+        s if s < 5e6 => (1e-7, "units of 100 ns"),
+        _ => (1e-9, "nanoseconds"),
     };
     if !what.is_empty() {
         notes.push(format!("The clock '{name}' counts {what} (its median step is {step})."));
@@ -129,13 +164,19 @@ fn clock(times: &[f64], name: &str, notes: &mut Vec<String>) -> f64 {
     seconds
 }
 
-/// A cell's number; NaN where the cell is empty or says so.
-fn number(record: &csv::StringRecord, (at, name): &(usize, String), line: u64) -> Result<f64, KinectFault> {
+/// A cell's number; NaN where the cell is empty or says so. A comma may be its point where it separates no cells.
+fn number(
+    record: &csv::StringRecord,
+    (at, name): &(usize, String),
+    line: u64,
+    commas: bool,
+) -> Result<f64, KinectFault> {
     let text = record.get(*at).unwrap_or_default();
     if text.is_empty() {
         return Ok(f64::NAN);
     }
-    match text.parse::<f64>() {
+    let pointed = if commas { text.replace(',', ".") } else { text.to_owned() };
+    match pointed.parse::<f64>() {
         Ok(value) if value.is_infinite() => Ok(f64::NAN),
         Ok(value) => Ok(value),
         Err(_) => Err(KinectFault::NotANumber { line, column: name.clone(), found: text.into() }),

@@ -91,11 +91,21 @@ pub(super) fn side(name: &str) -> i8 {
     parts(name).0
 }
 
+/// What all names but the root's begin with, up to a separator: the name of an actor or of a rig.
+fn prefix(skeleton: &Skeleton) -> &str {
+    let mut names = skeleton.joints.iter().skip(1).map(|j| j.name.as_str());
+    let first = names.next().unwrap_or_default();
+    let ends = first.char_indices().filter(|(_, c)| !c.is_alphanumeric()).map(|(at, c)| at + c.len_utf8());
+    let common = ends.take_while(|end| names.clone().all(|name| name.starts_with(&first[..*end])));
+    &first[..common.last().unwrap_or(0)]
+}
+
 /// The joints by their names' parts; none where pelvis, head or a limb are not all there, or hang together otherwise.
 pub(super) fn fit(skeleton: &Skeleton) -> Option<JointMap> {
     let mut index: HashMap<(i8, String), usize> = HashMap::new();
+    let prefix = prefix(skeleton);
     for (joint, j) in skeleton.joints.iter().enumerate() {
-        index.entry(parts(&j.name)).or_insert(joint);
+        index.entry(parts(j.name.strip_prefix(prefix).unwrap_or(&j.name))).or_insert(joint);
     }
     let parent = |j: usize| skeleton.joints[j].parent;
     let above = |j: usize| std::iter::successors(Some(j), move |&at| parent(at));

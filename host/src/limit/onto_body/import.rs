@@ -1,24 +1,20 @@
 //! A robot and its map as limits of a skeleton's joints.
 
-use std::f64::consts::{PI, TAU};
-
 use kinesic::model::LoadError;
 use kinesic::rig::JointKind;
 use nalgebra::{UnitQuaternion, Vector3};
 
+use super::rows::{Row, no_acceleration, note_leaders, rows};
 use super::zero_pose::{rig_joint, world, zero};
 use super::{Entry, MapKind, RobotMap};
 use crate::clip::Canonical;
 use crate::clip::map::nearest;
 use crate::limit::{HeightLimit, JointLimit, LimitsModel};
 use crate::rig::{JointCoordinates, Rig};
-use crate::robot::{Mimic, Motion, Robot, RobotError, RobotJoint};
+use crate::robot::{Motion, Robot, RobotError};
 
 /// Axes of a chain may be this far from a right angle (cosine; half a degree): a `rpy` of 1.57 is meant to be a quarter turn.
 const SQUARE: f64 = 1e-2;
-
-/// Bounds beyond this mean that there are none, rad: no robot counts 160 turns, and degrees stay below.
-const UNLIMITED: f64 = 1e3;
 
 /// Rates that stand in where the map has none of its own.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -190,7 +186,7 @@ fn robot_joints(robot: &Robot, rig: &Rig, entries: &[Option<&Entry>]) -> Result<
                     format!("'{name}' (line {}) is of the type '{kind}', expected revolute or continuous", found.line);
                 return refuse(what, "leave it out of the map: only hinges have angles".to_owned());
             }
-            if let Some(mimic) = &found.mimic {
+            if let Some(mimic) = robot.leader(found) {
                 let what =
                     format!("'{name}' (line {}) follows '{}' and has no angle of its own", found.line, mimic.joint);
                 return refuse(
@@ -219,150 +215,6 @@ fn robot_joints(robot: &Robot, rig: &Rig, entries: &[Option<&Entry>]) -> Result<
         all.push(chosen);
     }
     Ok(all)
-}
-
-/// Bounds and rates of one coordinate.
-#[derive(Clone, Copy, Debug)]
-struct Row {
-    lower: f64,
-    upper: f64,
-    velocity: f64,
-    acceleration: f64,
-    jerk: f64,
-    rest: Option<f64>,
-}
-
-fn no_acceleration(place: &str) -> RobotError {
-    let help =
-        "a URDF has none: give --acceleration 20, or acceleration = 20.0 in the map, from the servo's torque and load";
-    RobotError::new(place, "found no acceleration, expected rad/s^2", help)
-}
-
-/// The joints that follow one, also by way of others, each as `multiplier x + offset` of its angle `x`.
-fn followers<'r>(robot: &'r Robot, leader: &RobotJoint) -> Vec<(&'r RobotJoint, Mimic)> {
-    let mut found: Vec<(&RobotJoint, Mimic)> = Vec::new();
-    let mut open = vec![Mimic { joint: leader.name.clone(), multiplier: 1.0, offset: 0.0 }];
-    while let Some(up) = open.pop() {
-        for follower in &robot.joints {
-            let Some(own) = follower.mimic.as_ref().filter(|own| own.joint == up.joint && own.multiplier != 0.0) else {
-                continue;
-            };
-            // A ring of followers ends where it began.
-            if follower.name == leader.name || found.iter().any(|(known, _)| known.name == follower.name) {
-                continue;
-            }
-            let multiplier = own.multiplier * up.multiplier;
-            let offset = own.multiplier * up.offset + own.offset;
-            found.push((follower, Mimic { joint: leader.name.clone(), multiplier, offset }));
-            open.push(Mimic { joint: follower.name.clone(), multiplier, offset });
-        }
-    }
-    found
-}
-
-/// Followers whose leader is not in the file.
-fn note_leaders(robot: &Robot, notes: &mut Vec<String>) {
-    for joint in &robot.joints {
-        let Some(mimic) = joint.mimic.as_ref().filter(|mimic| robot.find(&mimic.joint).is_none()) else { continue };
-        let near = nearest(&mimic.joint, robot.joints.iter().map(|j| j.name.as_str()));
-        let near = near.map_or(String::new(), |near| format!("; did you mean '{near}'?"));
-        notes.push(format!(
-            "{} (line {}): follows '{}', which is not in the file{near}: its limits are not kept for it",
-            joint.name, joint.line, mimic.joint
-        ));
-    }
-}
-
-/// What each robot joint of an entry may do, its followers' limits included.
-fn rows(
-    robot: &Robot,
-    joints: &[usize],
-    entry: &Entry,
-    defaults: Rates,
-    notes: &mut Vec<String>,
-) -> Result<Vec<Row>, RobotError> {
-    let mut rows = Vec::new();
-    for (index, at) in joints.iter().enumerate() {
-        let joint = &robot.joints[*at];
-        let place = format!("joint '{}' (line {})", joint.name, joint.line);
-        let own = |list: &Option<Vec<f64>>| list.as_ref().map(|list| list[index]);
-        let (mut lower, mut upper) = bounds(joint, own(&entry.lower), own(&entry.upper), &place, notes)?;
-        let mut speed = own(&entry.velocity)
-            .or(joint.velocity.filter(|speed| *speed > 0.0))
-            .or(defaults.velocity)
-            .ok_or_else(|| {
-                let found = joint.velocity.map_or("no velocity".to_owned(), |speed| format!("velocity=\"{speed}\""));
-                let help = format!("write velocity = 6.0 into the map's entry '{}', or give --velocity 6", entry.joint);
-                RobotError::new(&place, format!("found {found}, expected rad/s above 0"), help)
-            })?;
-        notes.extend(joint.notes.iter().cloned());
-        for (follower, mimic) in followers(robot, joint) {
-            let ends = [follower.lower, follower.upper].map(|end| Some((end? - mimic.offset) / mimic.multiplier));
-            let [low, high] = if mimic.multiplier < 0.0 { [ends[1], ends[0]] } else { ends };
-            let tighter = (lower.max(low.unwrap_or(lower)), upper.min(high.unwrap_or(upper)));
-            let slower =
-                follower.velocity.filter(|v| *v > 0.0).map_or(speed, |v| speed.min(v / mimic.multiplier.abs()));
-            if tighter != (lower, upper) || slower != speed {
-                notes.push(format!("{}: tighter, for '{}' that follows it", joint.name, follower.name));
-            }
-            ((lower, upper), speed) = (tighter, slower);
-        }
-        if lower > upper {
-            let what = format!("found lower {lower} above upper {upper}, expected the other way round");
-            return Err(RobotError::new(place, what, "correct <limit>, or write lower and upper into the map's entry"));
-        }
-        rows.push(Row {
-            lower,
-            upper,
-            velocity: speed,
-            acceleration: own(&entry.acceleration).or(defaults.acceleration).ok_or_else(|| no_acceleration(&place))?,
-            jerk: own(&entry.jerk).or(defaults.jerk).unwrap_or(0.0),
-            rest: own(&entry.rest),
-        });
-    }
-    Ok(rows)
-}
-
-/// A joint's bounds, no more than a turn apart.
-fn bounds(
-    joint: &RobotJoint,
-    lower: Option<f64>,
-    upper: Option<f64>,
-    place: &str,
-    notes: &mut Vec<String>,
-) -> Result<(f64, f64), RobotError> {
-    if joint.motion == Motion::Continuous && lower.is_none() && upper.is_none() {
-        notes.push(format!("{}: continuous, kept within half a turn to either side", joint.name));
-        return Ok((-PI, PI));
-    }
-    let (low, high) = (lower.or(joint.lower), upper.or(joint.upper));
-    if low.is_none() && high.is_none() {
-        let help = "a revolute joint needs <limit lower=\"...\" upper=\"...\"/>; or write lower and upper, rad, into the map's entry";
-        return Err(RobotError::new(place, "found no bounds, expected lower and upper", help));
-    }
-    // What a <limit> leaves out is 0.
-    let (low, high) = (low.unwrap_or(0.0), high.unwrap_or(0.0));
-    if low <= -UNLIMITED && high >= UNLIMITED {
-        notes.push(format!(
-            "{}: bounds of {low:e} and {high:e} are none, kept within half a turn to either side",
-            joint.name
-        ));
-        return Ok((-PI, PI));
-    }
-    if low.abs().max(high.abs()) > 4.0 * PI {
-        let what = format!("found bounds {low} and {high}, expected radians");
-        return Err(RobotError::new(place, what, "these look like degrees: a half turn is 3.1416"));
-    }
-    if high - low <= TAU {
-        return Ok((low, high));
-    }
-    let cut_low = low.max(-PI);
-    let cut = (cut_low.min(high - TAU).max(low), (cut_low + TAU).min(high));
-    notes.push(format!(
-        "{}: {low:.3} .. {high:.3} is more than a turn, kept to {:.3} .. {:.3}",
-        joint.name, cut.0, cut.1
-    ));
-    Ok(cut)
 }
 
 /// The limit of a skeleton joint that one to three robot joints turn. Puts `joints` into the order of its coordinates.
@@ -397,7 +249,10 @@ fn limit(
                 let angle = cosine.clamp(-1.0, 1.0).acos().to_degrees();
                 let what =
                     format!("'{}' and '{}' are {angle:.1} degrees apart, expected 90", name(before), name(index));
-                let help = "hinges of one joint stand at right angles: give one of them to a neighbouring joint of the skeleton";
+                let help = format!(
+                    "hinges of one joint stand at right angles: give '{}' to the neighbouring joint of the skeleton",
+                    name(index)
+                );
                 return Err(RobotError::new(place, what, help));
             }
             straight -= other * straight.dot(other);

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `map` | [`RobotMap`]: robot joints of each skeleton joint, and what a URDF does not say |
 //! | `zero_pose` | how the skeleton stands when all of the robot's angles are zero |
+//! | `rows` | what each robot joint may do, for its followers too |
 //! | `import` | both together: [`import()`] |
 //!
 //! # The geometry
@@ -15,6 +16,7 @@
 
 mod import;
 mod map;
+mod rows;
 mod zero_pose;
 
 pub use import::{Import, Rates, import};

@@ -98,6 +98,9 @@ impl Robot {
     }
 }
 
+/// A larger velocity means that there is none, rad/s or m/s: no motor turns as fast.
+const FASTEST: f64 = 1e4;
+
 /// Attributes of an element at most. The XML reader compares each with all others of its element.
 const ATTRIBUTES: usize = 1000;
 
@@ -216,22 +219,28 @@ fn read(node: Node, line: u32) -> Result<RobotJoint, RobotError> {
     let mut notes = Vec::new();
     let mut soft = [bound("safety_controller", "soft_lower_limit")?, bound("safety_controller", "soft_upper_limit")?];
     let hard = [bound("limit", "lower")?, bound("limit", "upper")?];
-    if soft[0].is_some() && soft[0] == soft[1] && hard[0] != hard[1] {
-        notes.push(format!(
-            "{name}: soft limits of {} and {} would lock it, place holders: left out",
-            soft[0].unwrap_or(0.0),
-            soft[1].unwrap_or(0.0)
-        ));
-        soft = [None, None];
+    if let ([Some(low), Some(high)], true) = (soft, hard[0] != hard[1]) {
+        let nothing = low > high || hard[1].is_some_and(|end| low > end) || hard[0].is_some_and(|end| high < end);
+        if low == high || nothing {
+            let why = if nothing { "leave nothing of its limits" } else { "would lock it, place holders" };
+            notes.push(format!("{name}: soft limits of {low} and {high} {why}: left out"));
+            soft = [None, None];
+        }
     }
     let both = |end: usize, pick: fn(f64, f64) -> f64| {
         hard[end].zip(soft[end]).map(|(hard, soft)| pick(hard, soft)).or(hard[end]).or(soft[end])
     };
     let (lower, upper) = (both(0, f64::max), both(1, f64::min));
-    if motion == Motion::Revolute && lower == Some(0.0) && upper == Some(0.0) {
+    if let (Motion::Revolute, Some(lower), Some(upper)) = (motion, lower, upper)
+        && lower == upper
+    {
         notes.push(format!(
-            "{name}: bounds of 0 and 0 lock it; if they are place holders, write lower and upper into the map's entry"
+            "{name}: bounds of {lower} and {upper} lock it; if they are place holders, write lower and upper into the map's entry"
         ));
+    }
+    let mut velocity = bound("limit", "velocity")?;
+    if let Some(none) = velocity.take_if(|speed| *speed > FASTEST) {
+        notes.push(format!("{name}: a velocity of {none:e} is none"));
     }
     let mimic = match child(node, "mimic") {
         None => None,
@@ -258,7 +267,7 @@ fn read(node: Node, line: u32) -> Result<RobotJoint, RobotError> {
         axis,
         lower,
         upper,
-        velocity: number("limit", "velocity")?,
+        velocity,
         mimic,
         notes,
     })
