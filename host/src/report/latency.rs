@@ -31,12 +31,12 @@ const TRANSLATOR: [Workload; 2] = [
     Workload {
         name: "translator",
         size: "a model a joint, 25 joints, 8554 multiply-adds",
-        microseconds: [9_535, 6_382, 435, 498, 400, 129],
+        microseconds: [9_547, 6_382, 433, 493, 395, 128],
     },
     Workload {
         name: "translator-body",
         size: "whole body, 25 joints, 5002 multiply-adds",
-        microseconds: [6_942, 4_678, 268, 308, 243, 91],
+        microseconds: [6_925, 4_682, 266, 306, 241, 90],
     },
 ];
 const MECHANICS: [Workload; 2] = [
@@ -54,7 +54,7 @@ const MECHANICS: [Workload; 2] = [
 const COMPONENTS: [Workload; 1] = [Workload {
     name: "components",
     size: "23 joints, 4320 multiply-adds",
-    microseconds: [6_231, 4_198, 235, 270, 215, 81],
+    microseconds: [6_256, 4_208, 236, 270, 216, 80],
 }];
 const FACE: [Workload; 1] =
     [Workload { name: "face", size: "12 clusters, 10 hidden units", microseconds: [3_015, 2_085, 132, 152, 121, 44] }];
@@ -62,7 +62,7 @@ const EMOTION: [Workload; 2] = [
     Workload {
         name: "emotion-play",
         size: "a frame, 19 joints, 13 keyframes",
-        microseconds: [464, 302, 41, 48, 41, 12],
+        microseconds: [464, 302, 42, 48, 42, 12],
     },
     Workload {
         name: "emotion-change",
