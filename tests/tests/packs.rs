@@ -7,7 +7,7 @@ mod engines;
 mod robot;
 
 use engines::{golden, golden_folder};
-use kinesic::model::Kind;
+use kinesic::model::{Floats, Kind, Ungated};
 use kinesic::{LoadError, Pack, Pipeline, PipelineState, Pose, Translator};
 use kinesic_host::emotion;
 use kinesic_host::engines::known;
@@ -141,6 +141,24 @@ fn golden_packs_load_and_step() {
             assert!(styled.rotations.iter().all(|q| (q.norm() - 1.0).abs() < 1e-5), "{name}");
         }
         assert!(styled.root.norm() < 20.0, "{name}: {}", styled.root);
+    }
+}
+
+/// A product without a gate links none of it, refuses a pack that has one by name, and makes of any other the same bits.
+#[test]
+fn a_type_without_a_gate_reads_packs_without_a_gate() {
+    type Plain<'p> = Pipeline<'p, Translator<'p, 20, 1024, Ungated<Floats>>, 20>;
+    let gated = golden("translator-several.kin");
+    assert_eq!(Plain::load(&gated.pack().unwrap()).err(), Some(LoadError::Gated));
+    let file = golden("translator-whole-body.kin");
+    let pack = file.pack().unwrap();
+    let (plain, any) = (Plain::load(&pack).unwrap(), Device::load(&pack).unwrap());
+    let (mut of_plain, mut of_any) = (PipelineState::new(), PipelineState::new());
+    for pose in common::rig().poses(&common::neutral(3)) {
+        let [mut a, mut b] = [Pose::<19>::identity(); 2];
+        plain.step(&mut of_plain, Some(&small(&pose)), &mut a);
+        any.step(&mut of_any, Some(&small(&pose)), &mut b);
+        assert_eq!(a, b);
     }
 }
 
