@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Prints the tables of docs/quality.md. About six minutes on two cores. Needs the real clips (KINESIC_DATA).
-# usage: docs/quality.sh [xia|swap|eye|strengths|feet|live|strange|child|people|recognition|several]...   (default: all)
+# usage: docs/quality.sh [xia|swap|eye|strengths|feet|live|strange|actions|child|people|recognition|several]...   (default: all)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 data=$(realpath "${KINESIC_DATA:-../shared/data}")
@@ -112,6 +112,30 @@ PYTHON
 }
 
 # What walks taught, on what is no walk.
+# Packs of walks on other actions of the same actors.
+actions_table() {
+    local clips=$data/bandai2 styles=(active elderly exhausted feminine masculine youthful) style action
+    for style in "${styles[@]}"; do
+        "$kinesic" train translate --pair "$clips/walk_normal_001.bvh" "$clips/walk_${style}_001.bvh" \
+            --pair "$clips/walk_normal_002.bvh" "$clips/walk_${style}_002.bvh" --out "$work/$style.kin" >/dev/null 2>&1
+    done
+    echo
+    echo "Bandai-2's walks on other actions of the same actors, six styles, open ends, cm"
+    echo
+    echo "| action | doing nothing | **pack of walks** | worst against doing nothing | unlike, % |"
+    echo "|---|---|---|---|---|"
+    for action in walk walk-turn-left run wave-left-hand wave-both-hands raise-up-right-hand raise-up-both-hands; do
+        : >"$work/all"
+        for style in "${styles[@]}"; do
+            "$kinesic" eval translate "$work/$style.kin" --pair "$clips/${action}_normal_003.bvh" \
+                "$clips/${action}_${style}_003.bvh" --json >"$work/one" 2>/dev/null
+            "$kinesic" apply "$work/$style.kin" "$clips/${action}_normal_003.bvh" --out "$work/o.bvh" --overwrite --json >"$work/two" 2>/dev/null
+            echo "$(value "$work/one" open_identity_cm) $(value "$work/one" open_error_cm) $(value "$work/two" unfamiliar_percent)" >>"$work/all"
+        done
+        awk -v action="$action" '{ none += $1; error += $2; unlike += $3; if (NR == 1 || $2 - $1 > worst) worst = $2 - $1 }
+            END { printf "| %s | %.1f | **%.1f** | %+.1f | %.0f |\n", action, none / NR, error / NR, worst, unlike / NR }' "$work/all"
+    done
+}
 strange_table() {
     local clips=$data/xia styles=(angry childlike depressed old proud sexy strutting) style clip path
     for style in "${styles[@]}"; do
@@ -243,7 +267,7 @@ people_table() {
         END { printf "| **mean** | %.2f | %.2f | %.2f | %.2f | |\n", sum[1], sum[2], sum[3], sum[4] }' "$work/all"
 }
 
-for part in "${@:-xia swap eye strengths feet live strange child people recognition several}"; do
+for part in "${@:-xia swap eye strengths feet live strange actions child people recognition several}"; do
     for table in $part; do
         case $table in
         xia) xia 000 001 ;;
@@ -253,6 +277,7 @@ for part in "${@:-xia swap eye strengths feet live strange child people recognit
         feet) feet_table clip lock free ;;
         live) feet_table pack lock live free ;;
         strange) strange_table ;;
+        actions) actions_table ;;
         child) child_table ;;
         people) people_table ;;
         recognition) KINESIC_DATA=$data cargo run --release --locked -q -p kinesic-benches --bin recognition ;;
