@@ -97,6 +97,6 @@ for clip in clips:
         found = [[float(x) for x in row[2:]] for row in rows if row[:2] == [engine, clip]]
         mean = [sum(column) / len(column) for column in zip(*found)]
         # Nothing is minus zero.
-    cell = lambda x, digits: "-" if x != x else f"{round(x, digits) + 0.0:.{digits}f}"
+        cell = lambda x, digits: "-" if x != x else f"{round(x, digits) + 0.0:.{digits}f}"
         print(f"| {clip} | {engine} | " + " | ".join(map(cell, mean, [1, 1, 2, 0, 0, 1, 2])) + " |")
 PYTHON

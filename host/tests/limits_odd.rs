@@ -77,16 +77,17 @@ fn bounds_of_0_and_0_are_kept_and_said() {
 
 #[test]
 fn no_bounds_written_as_huge_ones_are_none() {
+    let thousandths = |x: f64| (x * 1e3).round() / 1e3;
+    let half = thousandths(std::f64::consts::PI);
     for huge in ["lower='-1e16' upper='1e16'", "lower='-inf' upper='inf'"] {
         let import = made(&format!("<limit {huge} velocity='9'/>"), "").unwrap();
-        let half = (std::f64::consts::PI * 1e3).round() / 1e3;
         assert_eq!(bounds(&import), [-half, half], "{huge}");
         noted(&import, &["elbow", "none", "half a turn"]);
     }
     for (one, [low, high]) in [
-        ("lower='-2.4' upper='1e16'", [-2.4, 3.142]),
-        ("lower='-inf' upper='0'", [-3.142, 0.0]),
-        ("lower='4' upper='inf'", [4.0, 10.283]),
+        ("lower='-2.4' upper='1e16'", [-2.4, half]),
+        ("lower='-inf' upper='0'", [-half, 0.0]),
+        ("lower='4' upper='inf'", [4.0, thousandths(4.0 + std::f64::consts::TAU)]),
     ] {
         let import = made(&format!("<limit {one} velocity='9'/>"), "").unwrap();
         assert_eq!(bounds(&import), [low, high], "{one}");
