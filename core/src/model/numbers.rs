@@ -26,7 +26,7 @@ pub struct Floats;
 pub struct Integers;
 
 /// The number types `N`, and no translator that knows how familiar a frame is: those of machines never do, nor does any that was trained with
-/// `--no-gate`. The code of the gate, 5 kB, is not linked.
+/// `--no-gate`. The code of the gate is not linked: some 6 kB of flash on a Cortex-M4F.
 #[derive(Clone, Copy, Debug)]
 pub struct Ungated<N>(PhantomData<N>);
 

@@ -58,7 +58,7 @@ impl<'a> Pack<'a> {
         bytemuck::try_cast_slice(bytes).map_err(|_| LoadError::Shape { tensor: name, found: 0, expected })
     }
 
-    /// The bytes of `expected` elements of a size. One function for all types: a third of the code of loading.
+    /// The bytes of `expected` elements of a size. One function for all types, instead of one each.
     #[inline(never)]
     fn checked(
         &self,

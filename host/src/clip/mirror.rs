@@ -93,11 +93,11 @@ fn checked_partners(skeleton: &Skeleton, map: Option<&JointMap>) -> Result<Vec<u
     Ok(partners)
 }
 
-fn reflect(v: Vector3<f64>) -> Vector3<f64> {
+pub(crate) fn reflect(v: Vector3<f64>) -> Vector3<f64> {
     Vector3::new(-v.x, v.y, v.z)
 }
 
 /// `S R S` with `S = diag(-1, 1, 1)`: the axis is a pseudo-vector, so Y and Z turn round and X stays.
-fn reflect_rotation(r: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
+pub(crate) fn reflect_rotation(r: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
     UnitQuaternion::new_unchecked(Quaternion::new(r.w, r.i, -r.j, -r.k))
 }

@@ -42,6 +42,7 @@ pub use bvh::write::{WriteError, WriteOptions};
 pub use error::ReadError;
 pub use map::{Canonical, JointMap, SkeletonMap};
 pub use mirror::MirrorError;
+pub(crate) use mirror::{reflect, reflect_rotation};
 pub use notes::NoteLog;
 pub use read::{ReadOptions, contents, gathered, read, read_with};
 pub use resample::{Memory, ResampleError};

@@ -8,7 +8,7 @@ use kinesic::rig::JointKind;
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 use super::Rig;
-use crate::clip::Clip;
+use crate::clip::{Clip, reflect, reflect_rotation};
 
 /// Largest angle between a bone and the image of its partner.
 const ASKEW: f64 = 20.0;
@@ -38,9 +38,9 @@ impl Sides {
         }
         let world = rig.skeleton.world_rotations(straight);
         for (joint, partner) in sides.partners.iter().copied().enumerate() {
-            let turn = quarters(&(reflected(&world[partner]).inverse() * world[joint]));
+            let turn = quarters(&(reflect_rotation(&world[partner]).inverse() * world[joint]));
             // There and back again is no turn.
-            sides.turns[partner] = reflected(&turn).inverse();
+            sides.turns[partner] = reflect_rotation(&turn).inverse();
             sides.turns[joint] = turn;
         }
         sides.fit(rig).then_some(sides)
@@ -50,8 +50,7 @@ impl Sides {
     fn fit(&self, rig: &Rig) -> bool {
         let joints = &rig.skeleton.joints;
         joints.iter().zip(&self.partners).all(|(joint, &partner)| {
-            let offset = joints[partner].offset;
-            let image = self.turn(joint.parent).inverse() * Vector3::new(-offset.x, offset.y, offset.z);
+            let image = self.turn(joint.parent).inverse() * reflect(joints[partner].offset);
             joint.offset.norm() < SHORT || joint.offset.angle(&image) < ASKEW.to_radians()
         })
     }
@@ -68,7 +67,7 @@ impl Sides {
     /// Local rotation of a joint in the mirror of these.
     pub fn image(&self, joint: usize, locals: &[UnitQuaternion<f64>]) -> UnitQuaternion<f64> {
         let of_parent = self.turn(self.parents[joint]);
-        of_parent.inverse() * reflected(&locals[self.partners[joint]]) * self.turns[joint]
+        of_parent.inverse() * reflect_rotation(&locals[self.partners[joint]]) * self.turns[joint]
     }
 
     /// A clip of this skeleton in the mirror, on the same skeleton.
@@ -76,7 +75,7 @@ impl Sides {
         let joints = clip.skeleton.len();
         let frames = clip.rotations.chunks_exact(joints.max(1));
         Clip {
-            root: clip.root.iter().map(|at| Vector3::new(-at.x, at.y, at.z)).collect(),
+            root: clip.root.iter().copied().map(reflect).collect(),
             rotations: frames.flat_map(|locals| (0..joints).map(|joint| self.image(joint, locals))).collect(),
             coordinates: None,
             ..clip.clone()
@@ -130,11 +129,6 @@ fn unit(axis: usize) -> Vector3<f64> {
     let mut unit = Vector3::zeros();
     unit[axis] = 1.0;
     unit
-}
-
-/// A rotation in a mirror that turns X round.
-fn reflected(q: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
-    UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(q.w, q.i, -q.j, -q.k))
 }
 
 /// The nearest of the 24 turns by quarters about the axes.
@@ -203,7 +197,7 @@ mod tests {
             let (own, image) = (places(&rows), places(&mirror.rows(&rows)));
             for joint in 0..rig.joints() {
                 let from = own[sides.partner(joint)] - own[0];
-                worst = worst.max((image[joint] - image[0] - Vector3::new(-from.x, from.y, from.z)).norm());
+                worst = worst.max((image[joint] - image[0] - reflect(from)).norm());
             }
         }
         worst
@@ -227,7 +221,7 @@ mod tests {
         for (frame, from) in [(0, clip.positions(0)), (30, clip.positions(30))] {
             for (joint, at) in image.positions(frame).into_iter().enumerate() {
                 let from = from[sides.partner(joint)];
-                assert!((at - Vector3::new(-from.x, from.y, from.z)).norm() < 1e-9);
+                assert!((at - reflect(from)).norm() < 1e-9);
             }
         }
         let back = sides.mirrored(&image);
